@@ -162,6 +162,7 @@ struct Actor {
   std::vector<sim::Vec3> roots;
   std::vector<ActorPin> pins;
   std::vector<sim::PinnedVertex> pinned;  // those that are on, as the last step saw them
+  std::unique_ptr<CutFinish> coming_cut;  // a cut that is being finished
   std::unique_ptr<sim::StepContext> context;
   sim::StepReport last_report;
   StepErrorMeter error_meter;

@@ -396,7 +396,7 @@ constexpr Action kActions[] = {
      [](const Request& request, Demo& demo) { demo.turntable = std::clamp(request.value, -10.0, 10.0); }},
     {Ask::kUndo, [](const Request& request, Demo& demo) { undoEdits(stepsOf(request), demo); }},
     {Ask::kRedo, [](const Request& request, Demo& demo) { redoEdits(stepsOf(request), demo); }},
-    {Ask::kEndGesture, [](const Request&, Demo& demo) { demo.edits.gesture = false, finishCuts(demo); }},
+    {Ask::kEndGesture, [](const Request&, Demo& demo) { demo.edits.gesture = false, endCuts(demo); }},
     {Ask::kCompare, compare},
     {Ask::kCompareView,
      [](const Request& request, Demo& demo) {
@@ -442,6 +442,7 @@ bool ofFile(Ask what) {
 }
 
 void apply(const Request& request, Demo& demo) {
+  if (request.what != Ask::kEndGesture) finishCuts(demo);
   std::optional<EditStep> step = beginEdit(request, demo);
   kActions[static_cast<std::size_t>(request.what)].apply(request, demo);
   const bool later = step && comesLater(demo.edits.next, demo.loading);
@@ -474,6 +475,7 @@ void applyHeld(Demo& demo) {
 
 void applyRequests(Demo& demo) {
   installLoaded(demo);
+  workOnCuts(demo);
   if (!demo.requests.empty() || !demo.loading.held.empty()) {
     for (Actor& actor : demo.actors) actor.shown_still = false;
   }

@@ -39,10 +39,10 @@ auto savedOf(P& playback) requires std::same_as<std::remove_const_t<P>, Playback
 template <class A>
 auto savedOf(A& actor) requires std::same_as<std::remove_const_t<A>, Actor> {
   auto& [id, spec, body, haircut, scalp, clip, playback, reach, front, jumped, pose, previous_pose, hair,
-         previous_positions, ellipsoids, parts, worn, fitting_ellipsoids, worn_distances, roots, pins, pinned, context,
-         last_report, error_meter, detail, coarse, sleep, span, ahead, steps, posed_time, pose_still, unseen,
-         shown_still, usual_step, max_work, shown_pose, shown_positions, shown_skin, joint_matrices, layout_revision,
-         position_revision, pose_revision] = actor;
+         previous_positions, ellipsoids, parts, worn, fitting_ellipsoids, worn_distances, roots, pins, pinned,
+         coming_cut, context, last_report, error_meter, detail, coarse, sleep, span, ahead, steps, posed_time,
+         pose_still, unseen, shown_still, usual_step, max_work, shown_pose, shown_positions, shown_skin, joint_matrices,
+         layout_revision, position_revision, pose_revision] = actor;
   auto& [step_span, coarse_mesh, seen] = detail;
   return std::tuple_cat(savedOf(playback),
                         std::tie(jumped, pose.world, previous_pose.world, previous_positions, ellipsoids, roots, pinned,

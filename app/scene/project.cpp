@@ -18,6 +18,7 @@
 #include "app/files/text_file.h"
 #include "app/scene/demo_state.h"
 #include "app/scene/edit/brushed_hair.h"
+#include "app/scene/edit/cut_stroke.h"
 #include "app/scene/edit/groom_brush.h"
 #include "app/scene/edit/mesh_change.h"
 #include "app/scene/present_scene.h"
@@ -214,8 +215,8 @@ Autosave::~Autosave() {
 }
 
 void Autosave::keep(double now, const Demo& demo) {
-  // What the last step asked for may still be loading.
-  if (file_.empty() || now < look_at_ || !loadingNote(demo).empty()) return;
+  // What the last step asked for may still be loading, or be worked on.
+  if (file_.empty() || now < look_at_ || !loadingNote(demo).empty() || cutsAreComing(demo)) return;
   look_at_ = now + kLookEvery;
   // What was saved is newer than what was kept before it: that is kept anew at once.
   const std::string& scene = demo.scene.file;

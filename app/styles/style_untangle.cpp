@@ -7,7 +7,18 @@
 #include "app/styles/style_comb.h"
 
 namespace app {
+
+namespace relaxing {
+
+struct Neighbours {
+  std::vector<int> first{0}, list;
+};
+
+}  // namespace relaxing
+
 namespace {
+
+using relaxing::Neighbours;
 
 constexpr int kSweeps = 240, kFlatSweeps = 240, kFullSweepEvery = 3;
 constexpr double kShortestEdge = 0.0032;  // m: shorter ones ruin the conditioning of the simulator's systems
@@ -19,68 +30,39 @@ constexpr double kLargestMove = 0.004;  // m a sweep: large steps would throw ne
 
 using Corner = std::array<int, 4>;  // vertices, as CornerTet::v
 
-std::vector<Corner> corners(const sim::HairMeshShape& shape) {
-  std::vector<Corner> out;
-  for (const sim::RootFace& face : shape.root_faces) {
-    const int n = face.corner_count;
-    for (int l = 0; l + 1 < shape.bundleLayers(face); ++l) {
-      for (int k = 0; k < n; ++k) {
-        for (const int corner : {k, n + k}) {
-          Corner& vertices = out.emplace_back(sim::cornerTetOf(corner, n));
-          for (int& v : vertices) v = shape.column_first[face.columns[v % n]] + l + v / n;
-        }
+template <class Visit>
+void forEachCorner(const sim::RootFace& face, const sim::HairMeshShape& shape, const Visit& visit) {
+  const int n = face.corner_count;
+  for (int l = 0; l + 1 < shape.bundleLayers(face); ++l) {
+    for (int k = 0; k < n; ++k) {
+      for (const int corner : {k, n + k}) {
+        Corner vertices = sim::cornerTetOf(corner, n);
+        for (int& v : vertices) v = shape.column_first[face.columns[v % n]] + l + v / n;
+        visit(vertices);
       }
     }
   }
+}
+
+std::vector<Corner> corners(const sim::HairMeshShape& shape) {
+  std::vector<Corner> out;
+  for (const sim::RootFace& face : shape.root_faces)
+    forEachCorner(face, shape, [&](const Corner& vertices) { out.push_back(vertices); });
   return out;
 }
 
-struct Neighbours {
-  std::vector<int> first{0}, list;
-};
-
 // Every vertex's neighbours along its column and in its layer.
 Neighbours neighbours(const sim::HairMeshShape& shape, const std::vector<Corner>& all) {
-  std::vector<std::array<int, 2>> pairs;
-  for (const Corner& c : all)
-    for (int k = 1; k < 4; ++k) pairs.push_back({c[0], c[k]});
-  std::sort(pairs.begin(), pairs.end());
-  pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
+  std::vector<std::vector<int>> near(shape.positions.size());
+  for (const Corner& c : all) near[c[0]].insert(near[c[0]].end(), c.begin() + 1, c.end());
   Neighbours out;
-  std::size_t i = 0;
-  for (int v = 0; v < shape.vertexCount(); ++v) {
-    for (; i < pairs.size() && pairs[i][0] == v; ++i) out.list.push_back(pairs[i][1]);
+  for (std::vector<int>& list : near) {
+    std::sort(list.begin(), list.end());
+    out.list.insert(out.list.end(), list.begin(), std::unique(list.begin(), list.end()));
     out.first.push_back(static_cast<int>(out.list.size()));
   }
   return out;
 }
-
-// The mesh while it is relaxed. Roots do not move.
-struct Relaxation {
-  sim::HairMeshShape& shape;
-  const std::vector<Corner> all;
-  const Neighbours near;
-  const std::vector<Vec3> start;  // positions before the first sweep
-  std::vector<bool> root;
-  std::vector<Vec3> asked_at;     // where a vertex was when its distance to the body was last evaluated
-  std::vector<double> clearance;  // m: that distance
-
-  explicit Relaxation(sim::HairMeshShape& relaxed)
-      : shape(relaxed),
-        all(corners(relaxed)),
-        near(neighbours(relaxed, all)),
-        start(relaxed.positions),
-        root(relaxed.positions.size(), false),
-        asked_at(relaxed.positions),
-        clearance(relaxed.positions.size(), -1e9) {
-    for (int c = 0; c < shape.columnCount(); ++c) root[shape.column_first[c]] = true;
-  }
-  bool openCorner(const Corner& t, double fatness);
-  bool openCorners(double fatness);
-  bool lengthenEdges();
-  void spreadMoves(double spread);
-  void pushOut(const BodyDistance& body, double gap);
-};
 
 // Share of the fatness that a corner of a layer is asked for: acute ones would have to rise too steeply for all of it.
 double squareness(const Vec3& next, const Vec3& previous) {
@@ -88,9 +70,43 @@ double squareness(const Vec3& next, const Vec3& previous) {
   return std::clamp(sine / 0.8, kAcuteShare, 1.0);
 }
 
+}  // namespace
+
+// The mesh while it is relaxed. Roots do not move.
+struct Untangling::Relaxation {
+  const BodyDistance& body;
+  const double fatness, gap;
+  sim::HairMeshShape& shape;
+  const std::vector<Corner> all;
+  const Neighbours near;
+  std::vector<bool> root;
+  std::vector<Vec3> start;        // positions before the first sweep
+  std::vector<Vec3> asked_at;     // where a vertex was when its distance to the body was last evaluated
+  std::vector<double> clearance;  // m: that distance
+  int sweeps = 0;
+  bool done = false;
+
+  Relaxation(const BodyDistance& around, double wanted, double off, sim::HairMeshShape& relaxed)
+      : body(around),
+        fatness(wanted),
+        gap(off),
+        shape(relaxed),
+        all(corners(relaxed)),
+        near(neighbours(relaxed, all)),
+        root(relaxed.positions.size(), false) {
+    for (int c = 0; c < shape.columnCount(); ++c) root[shape.column_first[c]] = true;
+  }
+  bool openCorner(const Corner& t);
+  bool openCorners();
+  bool lengthenEdges();
+  void spreadMoves(double spread);
+  void pushOut();
+  void sweep();
+};
+
 // One Newton step of a corner's volume towards the fatness asked for, against the volume's gradient. Returns whether
 // the corner was clearly below it.
-bool Relaxation::openCorner(const Corner& t, double fatness) {
+bool Untangling::Relaxation::openCorner(const Corner& t) {
   std::vector<Vec3>& x = shape.positions;
   const Vec3 a = x[t[1]] - x[t[0]], b = x[t[2]] - x[t[0]], c = x[t[3]] - x[t[0]];
   const double volume = a.cross(b).dot(c), squares = a.squaredNorm() * b.squaredNorm() * c.squaredNorm();
@@ -113,14 +129,14 @@ bool Relaxation::openCorner(const Corner& t, double fatness) {
   return lacking > 0.15 * wanted * box;
 }
 
-bool Relaxation::openCorners(double fatness) {
+bool Untangling::Relaxation::openCorners() {
   bool bad = false;
-  for (const Corner& t : all) bad = openCorner(t, fatness) || bad;
+  for (const Corner& t : all) bad = openCorner(t) || bad;
   return bad;
 }
 
 // Moves the ends of edges that are too short apart. Returns whether one was clearly too short.
-bool Relaxation::lengthenEdges() {
+bool Untangling::Relaxation::lengthenEdges() {
   std::vector<Vec3>& x = shape.positions;
   bool bad = false;
   for (std::size_t v = 0; v < x.size(); ++v) {
@@ -142,7 +158,7 @@ bool Relaxation::lengthenEdges() {
 }
 
 // Blends each vertex's move since the start with the mean of its neighbours', so that the shape stays smooth.
-void Relaxation::spreadMoves(double spread) {
+void Untangling::Relaxation::spreadMoves(double spread) {
   std::vector<Vec3>& x = shape.positions;
   std::vector<Vec3> moved(x.size());
   for (std::size_t v = 0; v < x.size(); ++v) {
@@ -160,7 +176,7 @@ void Relaxation::spreadMoves(double spread) {
 
 // Moves vertices closer to the body than `gap` out to it. The distance is expensive and changes by at most the move:
 // it is evaluated again only where the vertex may have come near.
-void Relaxation::pushOut(const BodyDistance& body, double gap) {
+void Untangling::Relaxation::pushOut() {
   std::vector<Vec3>& x = shape.positions;
   for (std::size_t v = 0; v < x.size(); ++v) {
     if (root[v] || clearance[v] - (x[v] - asked_at[v]).norm() >= gap) continue;
@@ -170,7 +186,15 @@ void Relaxation::pushOut(const BodyDistance& body, double gap) {
   }
 }
 
-}  // namespace
+void Untangling::Relaxation::sweep() {
+  const bool flat = openCorners(), shorter = lengthenEdges();
+  if (flat || shorter) {
+    // Less from sweep to sweep, so that it ends.
+    spreadMoves(0.2 * (1 - static_cast<double>(sweeps) / kSweeps));
+    pushOut();
+  }
+  done = ++sweeps == kSweeps || (!flat && !shorter);
+}
 
 double cornerFatness(const Vec3& corner, const Vec3& next, const Vec3& previous, const Vec3& along) {
   const Vec3 a = next - corner, b = previous - corner, c = along - corner;
@@ -221,19 +245,50 @@ void layFlat(const BodyDistance& body, const std::vector<Vec3>& up, double fatne
   }
 }
 
+double flattestOf(const sim::RootFace& face, const sim::HairMeshShape& shape) {
+  double least = 1;
+  forEachCorner(face, shape, [&](const Corner& t) {
+    const std::vector<Vec3>& x = shape.positions;
+    least = std::min(least, cornerFatness(x[t[0]], x[t[1]], x[t[2]], x[t[3]]));
+  });
+  return least;
+}
+
+Untangling::Untangling(const BodyDistance& body, double fatness, double gap, sim::HairMeshShape& shape)
+    : relaxation_(std::make_unique<Relaxation>(body, fatness, gap, shape)) {
+  begin();
+}
+Untangling::~Untangling() = default;
+
+void Untangling::begin() {
+  Relaxation& relaxation = *relaxation_;
+  relaxation.start = relaxation.asked_at = relaxation.shape.positions;
+  relaxation.clearance.assign(relaxation.start.size(), -1e9);
+  relaxation.sweeps = 0;
+  relaxation.done = false;
+}
+
+int Untangling::work(int sweeps) {
+  int made = 0;
+  for (; made < sweeps && !done(); ++made) relaxation_->sweep();
+  return made;
+}
+
+bool Untangling::done() const {
+  return relaxation_->done;
+}
+
+double Untangling::flattest() const {
+  double least = 1;
+  for (const sim::RootFace& face : relaxation_->shape.root_faces)
+    least = std::min(least, flattestOf(face, relaxation_->shape));
+  return least;
+}
+
 double untangle(const BodyDistance& body, double fatness, double gap, sim::HairMeshShape& shape) {
-  Relaxation relaxation(shape);
-  for (int sweep = 0; sweep < kSweeps; ++sweep) {
-    const bool flat = relaxation.openCorners(fatness), shorter = relaxation.lengthenEdges();
-    if (!flat && !shorter) break;
-    // Less from sweep to sweep, so that it ends.
-    relaxation.spreadMoves(0.2 * (1 - static_cast<double>(sweep) / kSweeps));
-    relaxation.pushOut(body, gap);
-  }
-  const std::vector<Vec3>& x = shape.positions;
-  double worst = 1;
-  for (const Corner& t : relaxation.all) worst = std::min(worst, cornerFatness(x[t[0]], x[t[1]], x[t[2]], x[t[3]]));
-  return worst;
+  Untangling untangling(body, fatness, gap, shape);
+  untangling.work(kSweeps);
+  return untangling.flattest();
 }
 
 }  // namespace app

@@ -54,7 +54,15 @@ app::Request moveAt(int k, const app::Demo& demo) {
   return {app::Ask::kMove, "column", app::moveText({app::MeshElement::kColumn, {column}, along, 0.05, 1, true})};
 }
 
-using Sample = std::function<app::Request(int, const app::Demo&)>;
+// Strokes of three samples that end, and frames that finish the cut.
+std::vector<app::Request> cutAndEnd(int k, const app::Demo& demo) {
+  constexpr int kEvery = 25;
+  const int phase = k % kEvery;
+  if (phase < 3) return {sampleAt(k / kEvery, app::BrushTool::kCut, demo)};
+  return phase == 3 ? std::vector<app::Request>{{app::Ask::kEndGesture, "", ""}} : std::vector<app::Request>{};
+}
+
+using Sample = std::function<std::vector<app::Request>(int, const app::Demo&)>;
 
 // s, one a frame: the edit itself (the brush, rest quantities, what of the preconditioner follows them); in the step
 // what is neither forces, solve nor contacts (gravity's balance); all else of the frame.
@@ -67,7 +75,7 @@ Frames framesOf(const Sample& sample) {
   app::Demo demo = walkingHair();
   Frames frames;
   for (int frame = 0; frame < kWarmUp + kSamples; ++frame) {
-    if (sample && frame >= kWarmUp) demo.requests = {sample(frame, demo)};
+    if (sample && frame >= kWarmUp) demo.requests = sample(frame, demo);
     const double started = cpuSeconds();
     app::applyRequests(demo);
     const double edited = cpuSeconds();
@@ -108,9 +116,11 @@ bool runBrushCost() {
     holds = holds && worst + balance <= kBound;
   };
   for (int tool = 0; tool < static_cast<int>(app::kBrushNames.size()); ++tool)
-    row(std::string(app::kBrushNames[static_cast<std::size_t>(tool)]),
-        [&](int k, const app::Demo& demo) { return sampleAt(k, static_cast<app::BrushTool>(tool), demo); });
-  row("move", moveAt);
+    row(std::string(app::kBrushNames[static_cast<std::size_t>(tool)]), [&](int k, const app::Demo& demo) {
+      return std::vector{sampleAt(k, static_cast<app::BrushTool>(tool), demo)};
+    });
+  row("cut, and its end", cutAndEnd);
+  row("move", [](int k, const app::Demo& demo) { return std::vector{moveAt(k, demo)}; });
   return holds;
 }
 

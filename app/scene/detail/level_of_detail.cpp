@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "app/scene/detail/sleep.h"
+#include "app/scene/edit/cut_stroke.h"
 #include "app/scene/view/world_light.h"
 
 namespace app {
@@ -225,7 +226,7 @@ void stepInDetail(double time, Demo& demo, Actor& actor) {
 }
 
 bool nothingMoves(const Demo& demo) {
-  if (demo.loading.running.valid()) return false;
+  if (demo.loading.running.valid() || cutsAreComing(demo)) return false;
   for (const Actor& actor : demo.actors) {
     if (actor.body->parts_coming.valid()) return false;
   }

@@ -1,5 +1,5 @@
 // The stroke of a cutting brush. While it is drawn hair gives way as far as its prisms let it at once; when it ends,
-// hair of the shape before it is cut to what was asked for, and its prisms are untangled.
+// hair of the shape before it is cut to what was asked for, and its prisms are untangled, over the frames that follow.
 #pragma once
 
 #include <optional>
@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "app/groom/edit/shape_brush.h"
+#include "app/styles/style_shorten.h"
 
 namespace app {
 
@@ -24,8 +25,23 @@ std::span<const double> cutLengths(const sim::HairMeshShape& shape, std::optiona
 // Takes over what a sample asked for; `shape` as it left it.
 void followCut(std::span<const double> asked, const sim::HairMeshShape& shape, std::optional<CutStroke>& stroke);
 
-// Finishes the strokes on the characters' hair. A notice says by how much hair stays longer, and why.
-// Takes tenths of a second.
+// A stroke that has ended, and what its hair is coming to.
+struct CutFinish {
+  CutStroke stroke;
+  Shortening shortening;
+};
+
+// Ends the strokes on the characters' hair; they are finished by what follows.
+void endCuts(Demo& demo);
+
+// A frame's share of the work on strokes that have ended: some milliseconds. A notice says by how much hair stays
+// longer, and why. A stroke whose hair was shaped otherwise meanwhile is dropped.
+void workOnCuts(Demo& demo);
+
+// All of that work at once, up to tenths of a second: before anything else is asked of the hair.
 void finishCuts(Demo& demo);
+
+// Whether a stroke has ended that is not finished.
+bool cutsAreComing(const Demo& demo);
 
 }  // namespace app

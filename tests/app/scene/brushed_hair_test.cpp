@@ -10,6 +10,7 @@
 
 #include "app/files/data_path.h"
 #include "app/files/hair_file.h"
+#include "app/scene/edit/cut_stroke.h"
 #include "app/scene/edit/groom_brush.h"
 #include "app/scene/project.h"
 #include "tests/app/groom/groom_samples.h"
@@ -24,6 +25,7 @@ std::string did(const app::Request& request, app::Demo& demo) {
   demo.requests = {request, {Ask::kEndGesture, "", ""}};
   demo.message.clear();
   app::advanceFrame(demo, 0, {});
+  app::finishCuts(demo);
   EXPECT_FALSE(demo.message_is_fault) << demo.message;
   return demo.message;
 }

@@ -8,6 +8,7 @@
 
 #include "app/files/data_path.h"
 #include "app/scene/demo.h"
+#include "app/scene/edit/cut_stroke.h"
 #include "app/scene/edit/groom_brush.h"
 #include "app/scene/edit/hand_pins.h"
 #include "app/scene/edit/mesh_change.h"
@@ -39,6 +40,7 @@ std::string ask(const Request& request, app::Demo& demo) {
   demo.message_is_fault = false;
   demo.requests = {request, {Ask::kEndGesture, "", ""}};
   app::advanceFrame(demo, 0, {});
+  app::finishCuts(demo);
   return demo.message_is_fault ? demo.message : "";
 }
 
@@ -289,12 +291,17 @@ TEST(EditHistory, WhatMovesStaysInTheTimeThatIsShown) {
 
 // A length from a file begins from the style; hair whose mesh was changed before comes back with that mesh.
 TEST(EditHistory, AMeshOfItsOwnComesBackWithTheLengthThatItHad) {
-  app::Demo demo = movingDemo();
-  ASSERT_EQ(ask({Ask::kMesh, "add-layer", "2"}, demo), "");
-  const std::string before = app::editHash(demo);
-  ASSERT_EQ(ask({Ask::kMap, "length", "bob_length.png"}, demo), "");
-  ASSERT_EQ(ask({Ask::kUndo, "", "", 1}, demo), "");
-  EXPECT_EQ(app::editHash(demo), before);
+  for (const bool under_a_hat : {false, true}) {
+    app::Demo demo = movingDemo();
+    ASSERT_EQ(ask({Ask::kMesh, "add-layer", "2"}, demo), "");
+    if (under_a_hat) {
+      ASSERT_EQ(ask({Ask::kAttach, "", app::dataPath("assets/attachments/beanie.obj")}, demo), "");
+    }
+    const std::string before = app::editHash(demo);
+    ASSERT_EQ(ask({Ask::kMap, "length", "bob_length.png"}, demo), "");
+    ASSERT_EQ(ask({Ask::kUndo, "", "", 1}, demo), "");
+    EXPECT_EQ(app::editHash(demo), before) << under_a_hat;
+  }
 }
 
 // Hair of another mesh begins at rest on the body as it stands now.

@@ -10,6 +10,8 @@
 #include "app/files/errors.h"
 #include "app/files/recording.h"
 #include "app/scene/demo.h"
+#include "app/scene/detail/level_of_detail.h"
+#include "app/scene/edit/cut_stroke.h"
 #include "app/scene/edit/picking.h"
 #include "tests/run_program.h"
 
@@ -209,10 +211,57 @@ TEST(GroomBrush, ACutAllRoundTheHeadArrivesAtTheRing) {
     }
     demo.requests = {{Ask::kEndGesture, "", ""}};
     app::advanceFrame(demo, 1.0 / 60, {});
+    app::finishCuts(demo);
     ASSERT_FALSE(demo.message_is_fault) << demo.message;
   }
   EXPECT_GT(lowest(), kRing - 0.03);
   for (const sim::CornerTet& tet : demo.actors[0].haircut->mesh.tets) EXPECT_GT(tet.rest_volume, 0);
+}
+
+// A cut that has ended is worked on over some frames, in a paused window too. What is asked for meanwhile finds it
+// finished, with the same hair; undo takes back the whole of it.
+TEST(GroomBrush, ACutIsFinishedOverTheFramesAfterItsStroke) {
+  const auto cutOpen = [] {
+    app::Demo demo = app::openScene(sceneOf(app::Resolution::kMedium, "idle_turns.bvh"), 1.5);
+    demo.paused = true;
+    app::advanceFrame(demo, 1.0 / 60, {});
+    int tip = 0;
+    for (int k = 0; k < 3; ++k) {
+      const sim::Vec3 at = frontTip(demo, tip) + sim::Vec3(0, 0.15, 0);
+      demo.requests = {sampleAt(app::BrushTool::kCut, at, sim::Vec3::Zero())};
+      app::advanceFrame(demo, 1.0 / 60, {});
+    }
+    demo.requests = {{Ask::kEndGesture, "", ""}};
+    app::advanceFrame(demo, 1.0 / 60, {});
+    return demo;
+  };
+  const auto shape = [](const app::Demo& demo) { return demo.actors[0].haircut->mesh.shape.positions; };
+  app::Demo demo = cutOpen();
+  const std::vector<sim::Vec3> given_way = shape(demo);
+  int frames = 0;
+  for (; app::cutsAreComing(demo) && frames < 200; ++frames) {
+    EXPECT_EQ(shape(demo), given_way);
+    EXPECT_FALSE(app::nothingMoves(demo));
+    app::advanceFrame(demo, 1.0 / 60, {});
+  }
+  EXPECT_GE(frames, 2);
+  EXPECT_LE(frames, 40);
+  const std::vector<sim::Vec3> cut = shape(demo);
+  EXPECT_NE(cut, given_way);
+
+  app::Demo hasty = cutOpen();
+  hasty.requests = {{Ask::kSetParam, "density", "70"}};
+  app::advanceFrame(hasty, 0, {});
+  EXPECT_EQ(shape(hasty), cut);
+  app::Demo undone = cutOpen();
+  const std::size_t steps = undone.edits.steps.size();
+  undone.requests = {{Ask::kUndo, "", "", 1}};
+  app::advanceFrame(undone, 0, {});
+  EXPECT_EQ(undone.edits.done + 1, steps);
+  EXPECT_NE(shape(undone), given_way);
+  undone.requests = {{Ask::kRedo, "", "", 1}};
+  app::advanceFrame(undone, 0, {});
+  EXPECT_EQ(shape(undone), cut);
 }
 
 TEST(GroomBrush, HairThatIsMadeAnewSaysThatStrokesAreGoneAndUndoBringsThemBack) {
@@ -229,6 +278,7 @@ TEST(GroomBrush, HairThatIsMadeAnewSaysThatStrokesAreGoneAndUndoBringsThemBack) 
   int tip = 0;
   const sim::Vec3 at = frontTip(demo, tip);
   ask(sampleAt(app::BrushTool::kCut, at + sim::Vec3(0, 0.06, 0), sim::Vec3::Zero()));
+  app::finishCuts(demo);
   const std::vector<sim::Vec3> cut = demo.actors[0].haircut->mesh.shape.positions;
   ASSERT_TRUE(demo.actors[0].haircut->edited);
   EXPECT_NE(ask(style).find("what brushes made of the hair is gone"), std::string::npos) << demo.message;
