@@ -1,7 +1,6 @@
 // Columns of a hair mesh made shorter, each by its own share, that leaves no prism flat.
 #pragma once
 
-#include <memory>
 #include <vector>
 
 #include "app/styles/hair_styles.h"
