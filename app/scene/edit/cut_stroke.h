@@ -1,5 +1,5 @@
 // The stroke of a cutting brush. While it is drawn hair gives way as far as its prisms let it at once; when it ends,
-// hair of the shape before it is cut to what was asked for, and its prisms are untangled, over the frames that follow.
+// hair of the shape before it is cut to what was asked for, over the frames that follow, and its prisms are untangled.
 #pragma once
 
 #include <optional>
@@ -31,14 +31,14 @@ struct CutFinish {
   Shortening shortening;
 };
 
-// Ends the strokes on the characters' hair; they are finished by what follows.
+// Ends the strokes on the characters' hair. workOnCuts() or finishCuts() finish them.
 void endCuts(Demo& demo);
 
-// A frame's share of the work on strokes that have ended: some milliseconds. A notice says by how much hair stays
-// longer, and why. A stroke whose hair was shaped otherwise meanwhile is dropped.
+// Does a frame's share of the work on strokes that have ended: some milliseconds. A message says by how much hair stays
+// longer, and why. A stroke whose hair has changed its shape meanwhile is dropped.
 void workOnCuts(Demo& demo);
 
-// All of that work at once, up to tenths of a second: before anything else is asked of the hair.
+// Does all of that work at once: up to half a second. Every request calls it first, so that it finds the hair cut.
 void finishCuts(Demo& demo);
 
 // Whether a stroke has ended that is not finished.
