@@ -111,15 +111,15 @@ void Shortening::beginAttempt() {
     for (std::size_t c = 0; c < shares_.size(); ++c) shares_[c] = 1 - part * (1 - asked_[c]);
   }
   cut();
-  untangling_.begin();
+  if (!raising_) untangling_.begin();
 }
 
 int Shortening::raise() {
   raising_ = raised_++ < kMostRaises && raiseWhereFlat(shape_, kFlattest[static_cast<std::size_t>(attempt_)], shares_);
-  if (raising_) {
+  if (raising_)
     cut();
+  else
     untangling_.begin();
-  }
   return kSweepsOfARaise;
 }
 
