@@ -54,10 +54,11 @@ void tellWhatStays(const CutStroke& stroke, const sim::HairMeshShape& shape, Dem
         longer, wayAlong(columnOf(shape.positions, shape, c)).back() - stroke.lengths[static_cast<std::size_t>(c)]);
   if (longer < kNotAsAsked) return;
   char text[160];
-  std::snprintf(text, sizeof text,
-                "some hair stays %.0f mm longer than the ring: beside longer hair it would be flat; cut that as well, "
-                "or part it off",
-                1e3 * longer);
+  std::snprintf(
+      text, sizeof text,
+      "some hair stays %.0f mm longer than the ring asks: beside longer hair it would be flat; cut the longer hair "
+      "too, or part it off",
+      1e3 * longer);
   showMessage(text, demo);
 }
 
