@@ -10,6 +10,7 @@
 
 #include "app/figure/arm_clearance.h"
 #include "app/figure/character_build.h"
+#include "app/figure/face_mesh.h"
 #include "app/figure/hand_mesh.h"
 #include "app/figure/mannequin_field.h"
 #include "app/figure/mannequin_parts.h"
@@ -94,7 +95,7 @@ Character loadMannequin(const std::string& text, const std::string& file, Skinne
   sampleHead(&measure, character);
   fitParts(std::move(parts), character);
   addNose(mannequin.field, character);
-  drawn = withFingers(character.mesh, mannequin.field);
+  drawn = withFineFace(withFingers(character.mesh, mannequin.field), mannequin.field);
   return character;
 }
 

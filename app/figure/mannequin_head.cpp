@@ -35,13 +35,13 @@ const Loft& faceLoft() {
   struct Level {
     double y, side, front, back, shift;
   };
-  constexpr std::array<Level, 10> levels{{{0.030, 0.080, 0.060, 0.085, 0.272},
-                                          {0.090, 0.133, 0.096, 0.140, 0.256},
-                                          {0.160, 0.183, 0.133, 0.195, 0.230},
-                                          {0.240, 0.228, 0.170, 0.240, 0.199},
-                                          {0.330, 0.261, 0.210, 0.258, 0.160},
-                                          {0.430, 0.276, 0.238, 0.252, 0.132},
-                                          {0.540, 0.272, 0.246, 0.250, 0.114},
+  constexpr std::array<Level, 10> levels{{{0.030, 0.092, 0.062, 0.085, 0.268},
+                                          {0.090, 0.146, 0.100, 0.150, 0.252},
+                                          {0.160, 0.192, 0.138, 0.200, 0.226},
+                                          {0.240, 0.228, 0.172, 0.240, 0.196},
+                                          {0.330, 0.256, 0.210, 0.258, 0.160},
+                                          {0.430, 0.274, 0.238, 0.252, 0.132},
+                                          {0.540, 0.270, 0.246, 0.250, 0.114},
                                           {0.640, 0.245, 0.238, 0.245, 0.108},
                                           {0.740, 0.205, 0.205, 0.220, 0.093},
                                           {0.840, 0.130, 0.130, 0.150, 0.080}}};
@@ -54,20 +54,20 @@ const Loft& faceLoft() {
 }
 
 double nose(const Vec3& q) {
-  const RoundCone bridge{Vec3(0, 0.545, 0.336), Vec3(0, 0.368, 0.420), 0.0200, 0.0240};
+  const RoundCone bridge{Vec3(0, 0.560, 0.318), Vec3(0, 0.374, 0.410), 0.0240, 0.0260};
   const Vec3 m(std::abs(q.x()), q.y(), q.z());
-  const double tip = egg(q - Vec3(0, 0.354, 0.418), Vec3(0.036, 0.030, 0.036));
-  const double wing = egg(m - Vec3(0.045, 0.337, 0.378), Vec3(0.026, 0.024, 0.034));
-  const double column = egg(q - Vec3(0, 0.326, 0.398), Vec3(0.013, 0.013, 0.032));
-  return smoothMin(smoothMin(bridge.value(q), tip, 0.040), smoothMin(wing, column, 0.020), 0.034);
+  const double tip = egg(q - Vec3(0, 0.358, 0.412), Vec3(0.037, 0.034, 0.040));
+  const double wing = egg(m - Vec3(0.043, 0.340, 0.372), Vec3(0.027, 0.027, 0.038));
+  const double column = egg(q - Vec3(0, 0.328, 0.392), Vec3(0.014, 0.014, 0.036));
+  return smoothMin(smoothMin(bridge.value(q), tip, 0.046), smoothMin(wing, column, 0.024), 0.046);
 }
 
 // Lips: two soft rolls that follow the curve of the teeth and part in a dip; the upper one has a bow.
 double lips(const Vec3& q, double d) {
   const double x = std::abs(q.x()), x2 = x * x, curve = 1.7 * x2, smile = 0.6 * x2;
   const double bow = 0.006 * std::exp(-std::pow((x - 0.030) / 0.018, 2));
-  const double upper = egg(q - Vec3(0, 0.226 + smile + bow, 0.352 - curve), Vec3(0.108, 0.025, 0.036));
-  const double lower = egg(q - Vec3(0, 0.186 + smile, 0.342 - curve), Vec3(0.086, 0.031, 0.040));
+  const double upper = egg(q - Vec3(0, 0.226 + smile + bow, 0.352 - curve), Vec3(0.106, 0.028, 0.040));
+  const double lower = egg(q - Vec3(0, 0.186 + smile, 0.342 - curve), Vec3(0.088, 0.034, 0.045));
   d = smoothMin(d, smoothMin(upper, lower, 0.012), 0.034);
   d = smoothMax(d, -egg(q - Vec3(0, 0.2070 + smile, 0.391 - curve), Vec3(0.110, 0.0060, 0.020)), 0.016);  // seam
   return smoothMax(d, -egg(q - Vec3(0, 0.268, 0.418), Vec3(0.014, 0.032, 0.024)), 0.030);                 // philtrum
@@ -78,21 +78,24 @@ double lips(const Vec3& q, double d) {
 double headWithoutEars(const Vec3& q) {
   const Vec3 m(std::abs(q.x()), q.y(), q.z());  // the face is mirrored about x = 0
   double d = smoothMin(cranium(q), faceLoft().value(q), 0.16);
-  // The jaw rises from the chin to the ears.
-  static const Eigen::Matrix3d jaw_tilt = Eigen::AngleAxisd(0.46, Vec3::UnitX()).toRotationMatrix();
-  d = smoothMin(d, egg(jaw_tilt.transpose() * (q - Vec3(0, 0.195, 0.155)), Vec3(0.168, 0.108, 0.205)), 0.10);
-  d = smoothMin(d, egg(q - Vec3(0, 0.078, 0.290), Vec3(0.074, 0.056, 0.066)), 0.07);        // chin
-  d = smoothMin(d, egg(m - Vec3(0.182, 0.424, 0.186), Vec3(0.092, 0.078, 0.106)), 0.14);    // cheeks
-  d = smoothMin(d, egg(m - Vec3(0.100, 0.590, 0.258), Vec3(0.102, 0.032, 0.074)), 0.090);   // brows
-  d = smoothMax(d, -egg(m - Vec3(0.130, 0.516, 0.450), Vec3(0.096, 0.054, 0.116)), 0.066);  // eye sockets
-  d = smoothMin(d, egg(m - Vec3(0.131, 0.500, 0.266), Vec3(0.078, 0.056, 0.082)), 0.016);   // closed lids
-  d = smoothMin(d, nose(q), 0.046);
+  // The jaw: from the chin to its angles, and up to the ears.
+  static const Eigen::Matrix3d jaw_tilt = Eigen::AngleAxisd(0.40, Vec3::UnitX()).toRotationMatrix();
+  d = smoothMin(d, egg(jaw_tilt.transpose() * (q - Vec3(0, 0.190, 0.150)), Vec3(0.182, 0.108, 0.205)), 0.10);
+  static const RoundCone body{Vec3(0.120, 0.234, 0.092), Vec3(0.042, 0.084, 0.260), 0.054, 0.048};
+  static const RoundCone branch{Vec3(0.120, 0.234, 0.092), Vec3(0.196, 0.400, 0.070), 0.054, 0.066};
+  d = smoothMin(d, smoothMin(body.value(m), branch.value(m), 0.08), 0.15);
+  d = smoothMin(d, egg(q - Vec3(0, 0.074, 0.290), Vec3(0.070, 0.054, 0.064)), 0.08);        // chin
+  d = smoothMin(d, egg(m - Vec3(0.176, 0.402, 0.192), Vec3(0.098, 0.086, 0.112)), 0.13);    // cheeks
+  d = smoothMin(d, egg(m - Vec3(0.098, 0.592, 0.244), Vec3(0.112, 0.058, 0.074)), 0.10);    // brows
+  d = smoothMax(d, -egg(m - Vec3(0.120, 0.520, 0.452), Vec3(0.094, 0.054, 0.120)), 0.080);  // eye sockets
+  d = smoothMin(d, egg(m - Vec3(0.131, 0.502, 0.266), Vec3(0.080, 0.066, 0.086)), 0.034);   // closed lids
+  d = smoothMin(d, nose(q), 0.060);
   return lips(q, d);
 }
 
 const std::array<HeadEllipsoid, 2>& noseEllipsoids() {
   static const std::array<HeadEllipsoid, 2> nose{
-      HeadEllipsoid{Vec3(0, 0.4894, 0.3416), Vec3(0.0300, 0.1997, 0.0407), -0.5045},
+      HeadEllipsoid{Vec3(0, 0.4894, 0.3416), Vec3(0.0350, 0.1997, 0.0420), -0.5045},
       HeadEllipsoid{Vec3(0, 0.3484, 0.3009), Vec3(0.0803, 0.0761, 0.1576), -0.0885}};
   return nose;
 }

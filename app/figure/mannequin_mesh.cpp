@@ -203,7 +203,9 @@ double probe(const std::function<double(const Vec3&)>& field, const Vec3& p, Vec
   return sum / 4;
 }
 
-void project(const std::function<double(const Vec3&)>& field, double limit, Vec3& p, Vec3& normal) {
+}  // namespace
+
+void projectToSurface(const std::function<double(const Vec3&)>& field, double limit, Vec3& p, Vec3& normal) {
   Vec3 gradient;
   double f = probe(field, p, gradient);
   for (int step = 0; step < 2; ++step) {
@@ -217,8 +219,6 @@ void project(const std::function<double(const Vec3&)>& field, double limit, Vec3
   const double n = gradient.norm();
   normal = n > 1e-9 ? Vec3(gradient / n) : Vec3(Vec3::UnitY());
 }
-
-}  // namespace
 
 Surface meshSurface(const std::function<double(const Vec3&)>& field, const MeshGrid& grid) {
   Lattice l = layOut(grid);
@@ -243,7 +243,7 @@ Surface meshSurface(const std::function<double(const Vec3&)>& field, const MeshG
   }
   surface.normals.resize(surface.positions.size());
   for (std::size_t v = 0; v < surface.positions.size(); ++v)
-    project(field, limits[v], surface.positions[v], surface.normals[v]);
+    projectToSurface(field, limits[v], surface.positions[v], surface.normals[v]);
 
   const std::array<std::size_t, 3> step{l.index(1, 0, 0), l.index(0, 1, 0), l.index(0, 0, 1)};
   for (int j = 1; j + 1 < l.ny; ++j) {

@@ -30,4 +30,7 @@ struct Surface {
 // set (within a few hundredths of a millimetre where the function is smooth); normals are its gradient.
 Surface meshSurface(const std::function<double(const Vec3&)>& field, const MeshGrid& grid);
 
+// Moves p to the zero set nearby, in two steps of at most `limit` (m); `normal`: the gradient there, of length 1.
+void projectToSurface(const std::function<double(const Vec3&)>& field, double limit, Vec3& p, Vec3& normal);
+
 }  // namespace app

@@ -45,6 +45,12 @@ float lashes(vec2 m, float pixel) {
   return max(line, 0.75 * fringe);
 }
 
+// The fold above the closed lids, over which the socket begins: deepest in its middle.
+float lidFold(vec2 m, float pixel) {
+  float u = (m.x - 0.134) / 0.078, across = max(1.0 - u * u, 0.0);
+  return band(m.y - 0.5010 - 0.0400 * sqrt(across), 0.0012, 0.0052 + pixel) * smoothstep(0.0, 0.5, across);
+}
+
 // Share of the lips' colour: x the lips, y the seam between them. They run out to points at the corners.
 vec2 lips(vec2 m, float pixel) {
   float x2 = m.x * m.x, across = clamp(1.0 - x2 / 0.0106, 0.0, 1.0);
@@ -69,12 +75,13 @@ vec4 facePaint(vec3 q, vec3 brow_color, float pixel) {
        wing = (m - vec2(0.062, 0.335)) / vec2(0.030, 0.030);
   float folds = max(exp(-dot(mouth, mouth)), max(exp(-dot(fold, fold)), exp(-dot(wing, wing))));
   vec4 paint = mix(vec4(vec3(1.0), 1.0 + 0.5 * folds), vec4(0.84, 0.56, 0.53, 0.68), lip.x);
-  paint.rgb *= 1.0 - 0.6 * lip.y;
+  paint *= 1.0 - lip.y * vec4(vec3(0.6), -0.6);
   vec2 lid = (m - vec2(0.132, 0.517)) / vec2(0.070, 0.026);
   paint.rgb *= mix(vec3(1.0), vec3(0.86, 0.79, 0.77), exp(-dot(lid, lid)));
+  paint.rgb *= 1.0 - 0.30 * lidFold(m, pixel) * vec3(0.8, 1.0, 1.0);
   vec2 nostril = (m - vec2(0.0290, 0.3180)) / vec2(0.0130, 0.0060);
   paint.rgb *= 1.0 - 0.75 * (1.0 - smoothstep(0.6, 1.3, length(nostril))) * smoothstep(0.37, 0.39, q.z);
   paint.rgb = mix(paint.rgb, brow_color, 0.88 * brow(m, pixel));
-  paint = mix(paint, vec4(0.09, 0.075, 0.07, 0.8), lashes(m, pixel));
+  paint = mix(paint, vec4(0.09, 0.075, 0.07, 1.6), lashes(m, pixel));
   return paint;
 }

@@ -1,0 +1,13 @@
+// A finer face of the grown mannequin, for the eye alone: lids, lips and nose are smaller than the body's cells.
+#pragma once
+
+#include "app/figure/character.h"
+#include "app/figure/mannequin_field.h"
+
+namespace app {
+
+// The mesh with the face's edges halved and its vertices on the body's surface; all else stays. Vertices are added at
+// the end.
+SkinnedMesh withFineFace(const SkinnedMesh& mesh, const BodyField& body);
+
+}  // namespace app
