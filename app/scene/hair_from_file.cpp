@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <array>
+#include <filesystem>
+#include <string>
 
 #include "app/figure/hair_fit.h"
 #include "app/figure/head_model.h"
@@ -11,6 +13,7 @@
 #include "app/files/file_kind.h"
 #include "app/files/hair_file.h"
 #include "app/files/polygon_file.h"
+#include "app/files/presets.h"
 #include "app/files/text_file.h"
 #include "app/files/text_scanner.h"
 #include "app/groom/convert.h"
@@ -97,6 +100,18 @@ FieldFiles fieldsOf(const std::vector<ColumnShare>& shares, const sim::HairMeshS
   return fields;
 }
 
+// Of a hair mesh with a preset of its name beside it, as hairmesh-convert writes: where its strands' curls are.
+std::string lookBeside(const CharacterSpec& spec) {
+  const std::string preset = std::filesystem::path(spec.hair).replace_extension(".json").string();
+  if (!(spec.look.hair == render::HairLook{}) || !std::filesystem::is_regular_file(preset)) return "";
+  try {
+    if (!presetSections(preset).hair) return "";
+  } catch (const InputError&) {
+    return "";
+  }
+  return "how its strands look is in " + preset + " beside it: open that too, or give it to --preset";
+}
+
 }  // namespace
 
 sim::HairMeshShape hairFromFile(const CharacterSpec& spec, const Character& character, Haircut& haircut) {
@@ -135,6 +150,7 @@ sim::HairMeshShape hairFromFile(const CharacterSpec& spec, const Character& char
     bool turned = false;
     shape = readHairMesh(bytes, spec.hair, spec.reverse_faces, "", &turned, &shares);
     if (turned) note("all its faces were wound the other way, and are turned");
+    note(lookBeside(spec));
     if (!spec.mends.empty()) note(placeAsTold(spec.mends, told, shape));
   }
   if (!on_head) note(fitHair(character, spec.fit, shape, told));

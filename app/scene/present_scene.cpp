@@ -59,19 +59,22 @@ Scene movable(Scene scene, const std::string& file) {
   return scene;
 }
 
-void saveReshapedHair(const std::string& scene_file, const Demo& demo, Scene& scene) {
+std::vector<std::string> saveReshapedHair(const std::string& scene_file, const Demo& demo, Scene& scene) {
+  std::vector<std::string> written;
   for (std::size_t i = 0; i < demo.actors.size(); ++i) {
     const std::optional<sim::HairMeshShape> shape = looseBrushed(demo.actors[i]);
     if (!shape) continue;
     const std::filesystem::path beside =
         std::filesystem::path(scene_file).replace_extension().string() + "-hair" + std::to_string(i + 1) + ".obj";
     writeFile(beside.string(), writeHairMesh(*shape));
+    written.push_back(beside.filename().string());
     scene.characters[i].hair = beside.string();
     scene.characters[i].mends.clear();
     scene.characters[i].maps.length.clear();  // it is in the shape
     scene.characters[i].fit = scene.characters[i].reverse_faces = false;
     scene.characters[i].pins = pinsForAnotherMesh(demo.actors[i]);  // the file may order vertices otherwise
   }
+  return written;
 }
 
 }  // namespace app

@@ -1,7 +1,9 @@
 #include "app/scene/save_requests.h"
 
 #include <algorithm>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include "app/files/data_path.h"
 #include "app/files/output_file.h"
@@ -24,7 +26,7 @@ void savePreset(const Request& request, Demo& demo) {
 void saveScene(const Request& request, Demo& demo) {
   Scene scene = presentScene(demo);
   scene.name = stem(request.text);
-  saveReshapedHair(request.text, demo, scene);
+  const std::vector<std::string> beside = saveReshapedHair(request.text, demo, scene);
   writeFile(request.text, writeScene(movable(std::move(scene), request.text)));
   demo.scene.file = request.text;
   demo.scene.name = stem(request.text);
@@ -32,7 +34,9 @@ void saveScene(const Request& request, Demo& demo) {
   demo.edits.saved = lastDone(demo.edits);
   const bool tied = std::ranges::any_of(
       demo.actors, [](const Actor& actor) { return !actor.spec.ties.empty() && reshapedByHand(*actor.haircut); });
-  showMessage("saved " + request.text + (tied ? ", without the strokes on tied hair: a project keeps them" : ""), demo);
+  std::string text = "saved " + request.text;
+  for (std::size_t k = 0; k < beside.size(); ++k) text += (k == 0 ? ", its hair beside it in " : ", ") + beside[k];
+  showMessage(text + (tied ? ", without the strokes on tied hair: a project keeps them" : ""), demo);
 }
 
 void saveState(const Request& request, Demo& demo) {

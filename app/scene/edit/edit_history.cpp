@@ -1,7 +1,9 @@
 #include "app/scene/edit/edit_history.h"
 
 #include <algorithm>
+#include <cctype>
 #include <nlohmann/json.hpp>
+#include <string>
 #include <tuple>
 #include <utility>
 
@@ -86,11 +88,16 @@ std::string spaced(std::string name) {
   return name;
 }
 
+std::string capitalized(std::string words) {
+  if (!words.empty()) words[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(words[0])));
+  return words;
+}
+
 std::string titleOf(const Request& request, const EditKind& kind) {
   if (request.what == Ask::kSetParam) return rowTitle(request.name) + " " + rowValue(request.name, request.text);
-  if (request.what == Ask::kBrush) return request.name;
+  if (request.what == Ask::kBrush) return capitalized(request.name);
   if (request.what == Ask::kMove) return kind.title + (" " + request.name);
-  if (request.what == Ask::kMesh) return spaced(request.name);
+  if (request.what == Ask::kMesh) return capitalized(spaced(request.name));
   if (request.what == Ask::kAttach && request.text == "[]") return "Nothing worn";
   if (request.what == Ask::kBody) return "Body " + (request.text.empty() ? "by its outline" : request.text);
   std::string title = kind.title;

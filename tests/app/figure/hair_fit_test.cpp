@@ -222,6 +222,26 @@ TEST(HairFit, ToldUnitAndAxesOfAHairMeshAreTaken) {
   EXPECT_EQ(upright.note, "");
 }
 
+// What hairmesh-convert writes are two files; who opens one alone is told of the other.
+TEST(HairFit, AHairMeshSaysThatItsStrandsLookIsBesideIt) {
+  const std::string folder = test::freshFolder("look_beside");
+  app::CharacterSpec spec;
+  spec.hair = folder + "/hair.obj";
+  app::writeFile(spec.hair, app::writeHairMesh(styled(app::Style::kShort)));
+  const auto noteOf = [&] {
+    app::Haircut cut;
+    app::hairFromFile(spec, figure(), cut);
+    return cut.note;
+  };
+  EXPECT_EQ(noteOf(), "");
+  app::writeFile(folder + "/hair.json", R"({"characters": []})");
+  EXPECT_EQ(noteOf(), "") << "a scene is no look";
+  app::writeFile(folder + "/hair.json", R"({"name": "hair", "hair": {"curl_radius": 0.01}})");
+  EXPECT_NE(noteOf().find("look is in " + folder + "/hair.json"), std::string::npos) << noteOf();
+  spec.look.hair.curl_radius = 0.01f;
+  EXPECT_EQ(noteOf(), "") << "it was opened already";
+}
+
 TEST(HairFit, TheProgramSaysItOnceAndReadsIt) {
   const std::string folder = test::freshFolder("hair_fit"), file = folder + "/hair.obj", out = folder + "/out.obj";
   app::writeFile(file, app::writeHairMesh(changed(styled(app::Style::kShort), [](const Vec3& p) -> Vec3 {

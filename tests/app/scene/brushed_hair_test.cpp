@@ -204,7 +204,8 @@ TEST(BrushedHair, IsSavedWithTheHairThatWasTiedFromIt) {
   EXPECT_TRUE(restOf(other) == tied);
   did({Ask::kTie, "", "[]"}, other);
   EXPECT_TRUE(restOf(other) == brushed);
-  did({Ask::kSaveScene, "", folder + "/scene.json"}, demo);
+  EXPECT_EQ(did({Ask::kSaveScene, "", folder + "/scene.json"}, demo),
+            "saved " + folder + "/scene.json, its hair beside it in scene-hair1.obj");
   app::Demo scene = app::openScene(app::loadScene(folder + "/scene.json"), 1.5);
   EXPECT_LT(farthest(restOf(scene), tied), 2e-3);
   did({Ask::kTie, "", "[]"}, scene);

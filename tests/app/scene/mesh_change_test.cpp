@@ -103,7 +103,7 @@ TEST(MeshMove, WhatIsChosenGoesThereAndWhatIsAroundFollows) {
   EXPECT_GT(followed, 0);
   expectValid(demo);
   ASSERT_EQ(demo.edits.steps.size(), 1u);
-  EXPECT_EQ(demo.edits.steps[0].title, "move vertex");
+  EXPECT_EQ(demo.edits.steps[0].title, "Move vertex");
   for (int frame = 0; frame < 60; ++frame) app::advanceFrame(demo, 1.0 / 60, {});
   EXPECT_EQ(demo.stats.recoveries, 0);
 }
@@ -247,7 +247,7 @@ TEST(MeshChange, LayersComeAndGoWhileTheHairMoves) {
   ASSERT_EQ(ask({Ask::kMesh, "remove-layer", "6"}, demo), "");
   goOn();
   EXPECT_EQ(recoveries, 0);
-  EXPECT_EQ(demo.edits.steps.back().title, "remove layer");
+  EXPECT_EQ(demo.edits.steps.back().title, "Remove layer");
   expectValid(demo);
 }
 
