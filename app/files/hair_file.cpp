@@ -1,8 +1,10 @@
 #include "app/files/hair_file.h"
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cstdio>
+#include <span>
 #include <unordered_map>
 #include <utility>
 
@@ -194,8 +196,8 @@ std::vector<ColumnShare> Stacker::shares() const {
   std::vector<ColumnShare> out;
   for (const std::vector<int>& column : columns) {
     if (obj.shares.empty()) break;
-    const sim::Vec3& of = obj.shares[column.front()];
-    out.push_back({of[0], of[1], of[2]});
+    const Eigen::Vector4d& of = obj.shares[column.front()];
+    out.push_back({of[0], of[1], of[2], of[3]});
   }
   return out;
 }
@@ -227,10 +229,20 @@ void append(std::string& text, double value) {
   text.append(digits, error == std::errc() ? end : digits);
 }
 
-void appendLine(std::string& text, const char* keyword, const sim::Vec3& values) {
+void appendLine(std::string& text, const char* keyword, std::span<const double> values) {
   text += keyword;
-  for (int k = 0; k < 3; ++k) append(text, values[k]);
+  for (const double value : values) append(text, value);
   text += "\n";
+}
+
+void appendLine(std::string& text, const char* keyword, const sim::Vec3& values) {
+  appendLine(text, keyword, std::span(values.data(), 3));
+}
+
+// The width's share only where it is not 1: programs that know three read the others.
+void appendShare(std::string& text, const ColumnShare& share) {
+  const std::array values{share.clump, share.curl, share.frizz, share.width};
+  appendLine(text, "#look_share", std::span(values).first(share.width == 1 ? 3 : 4));
 }
 
 void reverse(sim::HairMeshShape& shape) {
@@ -313,8 +325,7 @@ std::string writeHairMesh(const sim::HairMeshShape& shape, std::span<const Colum
       appendLine(text, "v", shape.positions[v]);
       if (!shape.groom_offsets.empty() && !shape.groom_offsets[v].isZero(0))
         appendLine(text, "#groom_offset", shape.groom_offsets[v]);
-      if (l == 0 && !shares.empty())
-        appendLine(text, "#look_share", {shares[c].clump, shares[c].curl, shares[c].frizz});
+      if (l == 0 && !shares.empty()) appendShare(text, shares[c]);
     }
     for (std::size_t f = 0; f < shape.root_faces.size(); ++f) {
       const sim::RootFace& face = shape.root_faces[f];

@@ -12,7 +12,7 @@ namespace app {
 
 // Shares, 0 to 1, of a look's values for the strands that root at a column.
 struct ColumnShare {
-  double clump = 1, curl = 1, frizz = 1;
+  double clump = 1, curl = 1, frizz = 1, width = 1;
   bool operator==(const ColumnShare&) const = default;
 };
 

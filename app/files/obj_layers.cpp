@@ -85,10 +85,12 @@ void ObjReader::readOffset(std::string_view rest) {
 
 void ObjReader::readShare(std::string_view rest) {
   if (out.positions.empty()) fail("the look shares belong to no vertex", "put them after the vertex's line");
-  const sim::Vec3 share = threeCoordinates(rest);
+  Eigen::Vector4d share = Eigen::Vector4d::Ones();
+  for (int k = 0; k < 3; ++k) share[k] = coordinate(nextWord(rest));
+  if (const std::string_view width = nextWord(rest); !width.empty()) share[3] = coordinate(width);
   if (share.minCoeff() < 0 || share.maxCoeff() > 1)
-    fail("the look shares are not from 0 to 1", "give those of clump, curl and frizz");
-  out.shares.resize(out.positions.size(), sim::Vec3::Ones());
+    fail("the look shares are not from 0 to 1", "give those of clump, curl and frizz, and of width where it differs");
+  out.shares.resize(out.positions.size(), Eigen::Vector4d::Ones());
   out.shares.back() = share;
 }
 
@@ -167,7 +169,7 @@ ObjLayers readObjLayers(std::string_view text, const std::string& file) {
     text.remove_prefix(std::min(end + 1, text.size()));
   }
   if (!reader.out.offsets.empty()) reader.out.offsets.resize(reader.out.positions.size(), sim::Vec3::Zero());
-  if (!reader.out.shares.empty()) reader.out.shares.resize(reader.out.positions.size(), sim::Vec3::Ones());
+  if (!reader.out.shares.empty()) reader.out.shares.resize(reader.out.positions.size(), Eigen::Vector4d::Ones());
   const int count = static_cast<int>(reader.out.positions.size());
   for (const auto& [number, layer] : reader.out.layers) {
     for (const ObjFace& face : layer.faces) {

@@ -26,9 +26,9 @@ struct ObjLayer {
 struct ObjLayers {
   std::vector<sim::Vec3> positions;
   std::vector<int> position_lines;
-  std::vector<sim::Vec3> offsets;  // of the vertices before lines "#groom_offset"; as many as positions, or none
-  std::vector<sim::Vec3> shares;   // 0 to 1, of clump, curl and frizz: likewise before lines "#look_share"
-  std::map<int, ObjLayer> layers;  // by layer number
+  std::vector<sim::Vec3> offsets;       // of the vertices before lines "#groom_offset"; as many as positions, or none
+  std::vector<Eigen::Vector4d> shares;  // 0 to 1, of clump, curl, frizz and width: likewise before lines "#look_share"
+  std::map<int, ObjLayer> layers;       // by layer number
 };
 
 // Views into `text` live as long as it does. Throws InputError.

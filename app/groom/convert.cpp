@@ -167,6 +167,8 @@ std::string characterLine(const LookFit& look) {
     std::snprintf(part, sizeof part, ", tips %.2f as thick as roots", look.taper);
     text += part;
   }
+  if (const std::string thinner = lessElsewhere(look, &ColumnShare::width); !thinner.empty())
+    text += ", of different widths" + thinner;
   return text + "\n";
 }
 

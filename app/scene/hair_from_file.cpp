@@ -80,9 +80,9 @@ struct BroughtField {
   std::string FieldFiles::*picture;
   double ColumnShare::*share;
 };
-constexpr std::array kBrought{BroughtField{&FieldFiles::clump, &ColumnShare::clump},
-                              BroughtField{&FieldFiles::curl, &ColumnShare::curl},
-                              BroughtField{&FieldFiles::frizz, &ColumnShare::frizz}};
+constexpr std::array kBrought{
+    BroughtField{&FieldFiles::clump, &ColumnShare::clump}, BroughtField{&FieldFiles::curl, &ColumnShare::curl},
+    BroughtField{&FieldFiles::frizz, &ColumnShare::frizz}, BroughtField{&FieldFiles::width, &ColumnShare::width}};
 
 // Shares of the columns as pictures of the unrolled head; none of what is 1 everywhere.
 FieldFiles fieldsOf(const std::vector<ColumnShare>& shares, const sim::HairMeshShape& shape, const Scalp& scalp) {

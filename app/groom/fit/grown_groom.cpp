@@ -83,6 +83,7 @@ Groom growGroom(const sim::HairMeshShape& shape, const render::HairLook& look, i
     root.clump = static_cast<float>(shares[c].clump);
     root.curl = static_cast<float>(shares[c].curl);
     root.frizz = static_cast<float>(shares[c].frizz);
+    root.width = static_cast<float>(shares[c].width);
   }
   render::StrandGrowth growth(faces, positions, strands, 3, look, {roots, {}});
   growth.setPositions(positions);

@@ -29,6 +29,7 @@ constexpr double kMeanEarly = 0.4 / 3 + 0.25 / 2 + 0.2 / 2 + 0.15 * 0.48;
 constexpr std::size_t kMinColumnStrands = 8, kMinColumnPairs = 20, kMinPairs = 30;
 constexpr double kOwn = 0.7;  // of a strand's frizz that the nearest neighbour does not share, where it is its own
 constexpr double kOtherFrizz = 0.0004, kOtherClump = 0.25;  // m, 0..1: less is no difference between places
+constexpr double kMinWidthShare = 0.05;                     // of what most strands have: thinner ones are not seen
 // Root mean square of frizz and offset over a strand, in their own amplitudes: of grow(t) = t (1.6 - 0.6 t), two sines,
 // and a disc (shaders/common/strand.glsl).
 constexpr double kFrizzSpread = 0.667, kOffsetSpread = 0.31;
@@ -46,6 +47,7 @@ struct StrandMeasure {
   double wander = -1;            // the same by less, of its own: not shared with a neighbour; -1: it has none
   double along = 0;              // m, of the strand that grows in its place without curls
   double length_share = 1;       // of what is usual where it roots
+  double width = -1;             // at its root, in the groom's unit; negative: it has none
 };
 
 // The strand where it has come as far along the grown one as that at its even steps: a curl takes more of a strand's
@@ -263,18 +265,21 @@ double shareOf(double value, double most) {
   return std::round(1e3 * std::min(1.0, value / most)) / 1e3;
 }
 
-// Where clumps, curls or frizz differ from place to place, `look.all` becomes what most places do not exceed.
+// Where clumps, curls, frizz or widths differ from place to place, `look.all` becomes what most places do not exceed.
 void fitPlaces(const std::vector<StrandMeasure>& measures, const std::vector<Nearness>& nearness,
                const sim::HairMeshShape& shape, LookFit& look) {
-  std::vector<double> clump, curl, frizz;
+  std::vector<double> clump, curl, frizz, width;
   std::vector<const StrandMeasure*> all;
   for (const StrandMeasure& measure : measures) all.push_back(&measure);
   const auto around = byColumn(all, shape, [](const StrandMeasure* one) { return one->face; });
   for (const std::vector<const StrandMeasure*>& of : around) {
     const bool enough = of.size() >= kMinColumnStrands;
-    std::vector<float> own;
-    for (const StrandMeasure* one : of)
+    std::vector<float> own, widths;
+    for (const StrandMeasure* one : of) {
       if (one->own_frizz >= 0) own.push_back(static_cast<float>(one->own_frizz));
+      if (one->width > 0) widths.push_back(static_cast<float>(one->width));
+    }
+    width.push_back(widths.size() >= kMinColumnStrands ? quantile(widths, 0.5) : -1);
     curl.push_back(enough ? summary(of).curl_radius : -1);
     frizz.push_back(own.size() >= kMinColumnStrands ? quantile(own, 0.5) / kFrizzSpread : -1);
   }
@@ -301,6 +306,9 @@ void fitPlaces(const std::vector<StrandMeasure>& measures, const std::vector<Nea
   }
   take(frizz, kOtherFrizz, look.all.frizz, &ColumnShare::frizz);
   take(clump, kOtherClump, look.all.clump, &ColumnShare::clump);
+  double usual = 0;
+  take(width, 0, usual, &ColumnShare::width);
+  for (ColumnShare& column : look.columns) column.width = std::max(column.width, kMinWidthShare);
   if (!any) look.columns.clear();
 }
 
@@ -336,6 +344,8 @@ std::vector<StrandMeasure> measureStrands(const Groom& groom, double scale, cons
     measure.length_share =
         std::min(1.0, static_cast<double>(fit.strands[s].end) / static_cast<double>(fit.knots.size() - 1));
     measure.along = lineLength(grown);
+    if (groom.widths.size() == groom.points.size())
+      measure.width = groom.widths[groom.strand_first[static_cast<std::size_t>(strands.source[s])]];
     measureTurns(wander(strand, grown), measure);
     double least_quick = -1;
     // What the hair mesh misses of a whole wisp is no wander of its strands.

@@ -147,10 +147,34 @@ TEST(StrandPlaces, LengthsOfEachSideComeBack) {
   EXPECT_NEAR(right_anew / right, 1, 0.1);
 }
 
+// Strands of the left side are a third as wide as those of the right.
+TEST(StrandPlaces, WidthsOfEachSideComeBack) {
+  Groom given = bentOnTheLeft(curl);
+  for (std::size_t s = 0; s < given.strandCount(); ++s)
+    given.widths.insert(given.widths.end(), given.pointCount(s), given.strand(s)[0].x() > 0 ? 2e-5f : 6e-5f);
+  const Conversion conversion = convert(given);
+  ASSERT_FALSE(conversion.look.columns.empty());
+  std::array<double, 2> sum{}, count{};
+  for (int c = 0; c < conversion.shape.columnCount(); ++c) {
+    const double x =
+        conversion.shape.positions[static_cast<std::size_t>(conversion.shape.column_first[static_cast<std::size_t>(c)])]
+            .x();
+    if (std::abs(x) < 0.02) continue;  // a column at the parting has strands of both
+    sum[x > 0 ? 0 : 1] += conversion.look.columns[static_cast<std::size_t>(c)].width;
+    count[x > 0 ? 0 : 1] += 1;
+  }
+  EXPECT_NEAR(sum[0] / count[0], 1.0 / 3, 0.02) << conversionReport(conversion);
+  EXPECT_NEAR(sum[1] / count[1], 1, 0.02);
+  EXPECT_NE(conversionReport(conversion).find("of different widths (less than half"), std::string::npos);
+  std::ranges::fill(given.widths, 4e-5f);
+  for (const ColumnShare& column : convert(given).look.columns) EXPECT_EQ(column.width, 1);
+}
+
 TEST(StrandPlaces, SharesAreReadBackToTheBitAndOthersRefused) {
   Conversion conversion = convert(bentOnTheLeft(curl));
   std::vector<ColumnShare>& given = conversion.look.columns;
   given[1] = {1.0 / 3, 0, 1};
+  given[2].width = 0.7;
   std::vector<ColumnShare> read;
   const std::string text = writeHairMesh(conversion.shape, given);
   readHairMesh(text, "again.obj", false, "", nullptr, &read);
@@ -158,6 +182,7 @@ TEST(StrandPlaces, SharesAreReadBackToTheBitAndOthersRefused) {
   EXPECT_EQ(writeHairMesh(conversion.shape).find("#look_share"), std::string::npos);
   for (const auto& [line, fault] : {std::pair("#look_share 0 1.2 0\n", "not from 0 to 1"),
                                     {"#look_share -0.1 1 0\n", "not from 0 to 1"},
+                                    {"#look_share 1 1 0 2\n", "not from 0 to 1"},
                                     {"#look_share 1 x 0\n", "'x' is not a number"}}) {
     try {
       readHairMesh(std::string(text).insert(text.find("#look_share"), line), "wrong.obj");

@@ -155,6 +155,13 @@ TEST(Ties, TheRingHoldsWithinAMillimetreInAHeadShakeAtFourTimesItsSpeed) {
   EXPECT_EQ(recoveries, 0);
 }
 
+// m/s.
+double fastestOf(const app::Actor& actor) {
+  double fastest = 0;
+  for (const sim::Vec3& velocity : actor.hair.velocities) fastest = std::max(fastest, velocity.norm());
+  return fastest;
+}
+
 // Hair hangs still without contacts: what it does to the scalp, at its roots and through the ring, is its weight.
 TEST(Ties, TheScalpBearsTheWeightOfTiedHairAtRootsAndRing) {
   app::Scene scene = tiedScene("back", "idle_turns.bvh", app::Resolution::kLow);
@@ -164,7 +171,12 @@ TEST(Ties, TheScalpBearsTheWeightOfTiedHairAtRootsAndRing) {
   app::Demo demo = app::openScene(std::move(scene), 1.5);
   app::Actor& actor = demo.actors[0];
   actor.playback.paused = true;
-  for (int frame = 0; frame < 900; ++frame) app::advanceFrame(demo, 1.0 / 60, {});
+  int still = 0;  // frames in a row: limp hair that rests squeezed is guided off its rest for a while
+  for (int frame = 0; frame < 1800 && still < 120; ++frame) {
+    app::advanceFrame(demo, 1.0 / 60, {});
+    still = demo.stats.guided == 0 && fastestOf(actor) < 1e-3 ? still + 1 : 0;
+  }
+  ASSERT_EQ(still, 120) << "it does not come to rest";
   const sim::HairMesh& mesh = actor.haircut->mesh;
   const sim::BlockPattern pattern = sim::systemPattern(mesh);
   const sim::ForceModel<double> model = test::makeForceModel(mesh, pattern, demo.scene.sim);

@@ -206,7 +206,7 @@ struct Bounds {
 
 Bounds boundsOf(Resolution resolution) {
   if (resolution == Resolution::kLow) return {0.013, 0.019, 0.024, 0.0075};
-  if (resolution == Resolution::kUltra) return {0.014, 0.0205, 0.019, 0.004};
+  if (resolution == Resolution::kUltra) return {0.014, 0.0215, 0.019, 0.004};
   return {0.008, resolution == Resolution::kHigh ? 0.013 : 0.0145, 0.018, 0.004};
 }
 
