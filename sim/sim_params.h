@@ -106,8 +106,7 @@ struct ParamText {
 };
 ParamText setParam(SimParams& params, std::string_view name, std::string_view text);
 
-// Writes a field so that setParam reads the same value back: a number in its shortest exact form, "on"/"off", a
-// choice's name.
+// Writes a field so that setParam reads the same value back: a number's shortest exact form, "on"/"off", a choice.
 std::string paramText(const ParamField& field, const SimParams& params);
 
 }  // namespace sim

@@ -38,8 +38,7 @@ std::optional<Vec3> enterEllipsoid(const NearCollider& near, const Vec3& start, 
   return {};
 }
 
-// The same for signed distances, by conservative advancement: each look goes on by the gap, but at least by the
-// chord's share.
+// The same for signed distances, by conservative advancement: a look goes on by the gap, at least the chord's share.
 std::optional<Vec3> enterGrid(const DistanceGrid& grid, const NearCollider& near, double offset, const Vec3& start,
                               const Vec3& end) {
   std::optional<Vec3> entry;

@@ -1,5 +1,4 @@
-// Position correction and deformation minimization after a step (Wu and Yuksel 2016, figures 4 and 5), until nothing is
-// left inside.
+// Position correction and deformation minimization after a step (Wu and Yuksel 2016, figures 4 and 5).
 #pragma once
 
 #include <span>

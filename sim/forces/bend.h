@@ -11,8 +11,7 @@
 
 namespace sim {
 
-// `crush` (1/m^2): bound of C d2C/dx2 where a wall has collapsed. Without it hair crushed by wind oscillates from step
-// to step.
+// `crush` (1/m^2): bound of C d2C/dx2 where a wall has collapsed. Without it hair crushed by wind oscillates.
 template <class T>
 struct BendCondition : Condition<T, 6> {
   T crush;

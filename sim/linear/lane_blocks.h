@@ -1,5 +1,4 @@
-// Blocks of the factors that keep many systems side by side in lanes: without the directions that constraints remove,
-// and inverted.
+// Blocks of factors that keep many systems side by side in lanes, inverted without the directions of constraints.
 #pragma once
 
 #include <cstddef>

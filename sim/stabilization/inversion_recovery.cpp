@@ -11,6 +11,7 @@ namespace {
 constexpr double kLookEvery = 0.1;           // s
 constexpr double kInvertedShare = -0.05;     // of the rest volume: beyond flat
 constexpr double kSqueezed = 0.5;            // of the rest volume, of tetrahedra at rest: wound around their neighbours
+constexpr char kTouched = 1, kTied = 2;      // a vertex in contact; a root whose column a firm pin holds
 constexpr double kStillColumn = 0.02;        // m/s against the root
 constexpr double kFolded = -0.5;             // cosine between a column's segments, where at rest it is above zero
 constexpr double kGuideTime = 0.4;           // s
@@ -40,7 +41,8 @@ bool begin(RecoveryMemory::Column& column) {
   return true;
 }
 
-void look(const HairMesh& mesh, double seconds, std::vector<char>& touched, HairState& state) {
+void look(const RecoveredStep& step, double seconds, std::vector<char>& touched, HairState& state) {
+  const HairMesh& mesh = step.mesh;
   RecoveryMemory& recovery = state.memory.recovery;
   for (RecoveryMemory::Column& column : recovery.columns) {
     column.wait = std::max(0.0, column.wait - seconds);
@@ -48,10 +50,12 @@ void look(const HairMesh& mesh, double seconds, std::vector<char>& touched, Hair
     if (column.upright > kForgiven) column.backoff = 0;
   }
   touched.assign(mesh.vertexCount(), 0);
-  for (const Contact& contact : state.contacts) touched[contact.vertex] = 1;
+  const auto rootOf = [&](int v) { return mesh.shape.column_first[mesh.column_of[v]]; };
+  for (const PinnedVertex& pin : step.pins) touched[rootOf(pin.vertex)] |= pin.firm() ? kTied : 0;
+  for (const Contact& contact : state.contacts) touched[contact.vertex] |= kTouched;
   // With all of its column: near the roots nothing moves fast while the hair above is on its way home.
   const auto rests = [&](int v) {
-    const auto root = state.velocities.begin() + mesh.shape.column_first[mesh.column_of[v]];
+    const auto root = state.velocities.begin() + rootOf(v);
     const auto still = [&](const Vec3& u) { return (u - *root).squaredNorm() < kStillColumn * kStillColumn; };
     return std::all_of(root, root + mesh.shape.columnLength(mesh.column_of[v]), still);
   };
@@ -63,7 +67,7 @@ void look(const HairMesh& mesh, double seconds, std::vector<char>& touched, Hair
     for (const int v : vertices) recovery.columns[mesh.column_of[v]].upright = 0;
     const auto guided = [&](int v) { return recovery.columns[mesh.column_of[v]].guided >= 0; };
     if (lasted < kInvertedFor && std::none_of(vertices.begin(), vertices.end(), guided)) return;
-    if (std::any_of(vertices.begin(), vertices.end(), [&](int v) { return touched[v] != 0; })) return;
+    if (std::any_of(vertices.begin(), vertices.end(), [&](int v) { return (touched[v] & kTouched) != 0; })) return;
     for (const int v : vertices) {
       RecoveryMemory::Column& column = recovery.columns[mesh.column_of[v]];
       if ((!again && column.backoff > 0) || !begin(column)) continue;
@@ -75,7 +79,8 @@ void look(const HairMesh& mesh, double seconds, std::vector<char>& touched, Hair
   for (std::size_t t = 0; t < mesh.tets.size(); ++t) {
     const CornerTet& tet = mesh.tets[t];
     const double share = volumeOf(tet, state.positions) / tet.rest_volume;
-    const bool squeezed = share < kSqueezed && std::all_of(tet.v.begin(), tet.v.end(), rests);
+    const auto slack = [&](int v) { return (touched[rootOf(v)] & kTied) == 0 && rests(v); };
+    const bool squeezed = share < kSqueezed && std::all_of(tet.v.begin(), tet.v.end(), slack);
     // Very soft hair rests squeezed: guided once, it is left so.
     count(share < kInvertedShare || squeezed, share < kInvertedShare, tet.v, recovery.turned[t]);
   }
@@ -111,7 +116,7 @@ int recoverInversions(const RecoveredStep& step, std::vector<char>& touched, Hai
   RecoveryMemory& recovery = state.memory.recovery;
   recovery.since_look += step.dt;
   if (recovery.since_look >= kLookEvery) {
-    if (step.looks) look(mesh, recovery.since_look, touched, state);
+    if (step.looks) look(step, recovery.since_look, touched, state);
     recovery.since_look = 0;
     recovery.guided_columns = static_cast<int>(
         std::count_if(recovery.columns.begin(), recovery.columns.end(), [](const auto& c) { return c.guided >= 0; }));

@@ -12,6 +12,7 @@
 #include <span>
 #include <vector>
 
+#include "sim/forces/pinned_vertex.h"
 #include "sim/mesh/hair_mesh.h"
 #include "sim/mesh/hair_state.h"
 
@@ -24,8 +25,9 @@ inline constexpr double kRestWeight = 4;   // so 1.5 s at rest
 struct RecoveredStep {
   const HairMesh& mesh;
   std::span<const Vec3> start;
-  double dt;          // s
-  bool looks = true;  // for newly inverted columns, too
+  double dt;                             // s
+  bool looks = true;                     // for newly inverted columns, too
+  std::span<const PinnedVertex> pins{};  // that hold: what a tie squeezes is not wound
 };
 
 // Looks for inverted columns every 0.1 s, and moves those that are guided: returns how many. `touched`: scratch.

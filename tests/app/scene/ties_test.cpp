@@ -208,6 +208,18 @@ TEST(Ties, TheScalpBearsTheWeightOfTiedHairAtRootsAndRing) {
   EXPECT_LT((roots + ring + sim::Vec3(0, weight, 0)).norm(), 0.02 * weight);
 }
 
+// Nothing but forces moves tied hair while its figure stands: what a ring squeezes is how it hangs.
+TEST(Ties, NoColumnOfTiedHairIsGuidedWhileTheFigureStands) {
+  for (const char* scene : {"assets/scenes/pony_tail.json", "assets/scenes/plaits.json"}) {
+    app::Demo demo = app::openScene(app::loadScene(app::dataPath(scene)), 1.5);
+    demo.actors[0].playback.paused = true;
+    for (int frame = 0; frame < 120; ++frame) {
+      app::advanceFrame(demo, 1.0 / 60, {});
+      ASSERT_EQ(demo.stats.guided, 0) << scene << ", frame " << frame;
+    }
+  }
+}
+
 // m, how far from the scalp hair is combed at most on its way to the ring.
 double highestCombed(const app::Actor& actor) {
   const app::Scalp& scalp = actor.body->character.scalp;

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
+
 #include "app/styles/hair_styles.h"
 #include "tests/analytic_head.h"
 #include "tests/test_meshes.h"
@@ -35,6 +37,7 @@ struct Frozen {
   sim::HairMesh mesh = sim::buildHairMesh(test::combedShape(test::mixedPatch(5, 0.25)));
   sim::HairState state = sim::restState(mesh, Eigen::Isometry3d::Identity());
   std::vector<char> touched;
+  std::vector<sim::PinnedVertex> pins;
 
   Frozen() { sim::sizeMemory(mesh, state.memory); }
 
@@ -43,7 +46,7 @@ struct Frozen {
     int most = 0;
     for (double t = 0; t < seconds; t += dt) {
       const std::vector<Vec3> start = state.positions;
-      most = std::max(most, sim::recoverInversions({mesh, start, dt}, touched, state));
+      most = std::max(most, sim::recoverInversions({mesh, start, dt, true, pins}, touched, state));
     }
     return most;
   }
@@ -83,6 +86,26 @@ TEST(InversionRecovery, WaitsWhileAnythingOfAColumnIsOnItsWay) {
     EXPECT_EQ(hair.pass(0.9 * sim::kInvertedFor) > 0, !moves);
     EXPECT_GT(end - first, 2);
   }
+}
+
+// A tie presses hair together: what is squeezed under a firm pin is not wound, what is turned over there is.
+TEST(InversionRecovery, WhatATieSqueezesIsLeftAndWhatTurnsOverInItIsNot) {
+  const auto guided = [](bool over, double stiffness) {
+    Frozen hair;
+    for (int v = 0; v < hair.mesh.vertexCount(); ++v) {
+      if (hair.mesh.isRoot(v)) continue;
+      hair.state.positions[v].x() *= 0.4;  // towards the middle: all prisms keep 0.4 of their volume above the roots
+      hair.state.positions[v].z() *= over ? 1 : 0.4;
+    }
+    if (over) turnOver(5, hair.mesh, hair.state);
+    for (int c = 0; c < hair.mesh.columnCount(); ++c)
+      hair.pins.push_back({hair.mesh.shape.column_first[c] + 1, Vec3::Zero(), Vec3::Zero(), stiffness});
+    return hair.pass(sim::kInvertedFor + 0.2);
+  };
+  constexpr double kFirm = std::numeric_limits<double>::infinity();
+  EXPECT_EQ(guided(false, kFirm), 0);
+  EXPECT_GT(guided(false, 100), 0) << "a soft pin holds nothing together";
+  EXPECT_GT(guided(true, kFirm), 0);
 }
 
 TEST(InversionRecovery, NoVertexIsThrownAtAnyTimeStep) {
