@@ -1,5 +1,6 @@
 #include "app/figure/face_mesh.h"
 
+#include <cmath>
 #include <vector>
 
 #include "app/figure/fine_mesh.h"
@@ -11,24 +12,34 @@ namespace {
 
 constexpr double kFaceStep = 0.002;  // m: the farthest that a vertex in the middle of an edge is moved
 
-bool inFace(const BodyField& body, const Eigen::Vector3f& p) {
-  const Vec3 q = body.toHead(p.cast<double>());
+bool inFace(const Vec3& q) {
   return q.z() > 0.17 && q.y() > -0.02 && q.y() < 0.66;
+}
+
+// Lips and the wings of the nose: folds of 2 mm.
+bool inFolds(const Vec3& q) {
+  return q.z() > 0.24 && q.y() > 0.14 && q.y() < 0.38 && std::abs(q.x()) < 0.13;
+}
+
+void refine(bool (*inside)(const Vec3&), const BodyField& body, SkinnedMesh& mesh) {
+  std::vector<bool> chosen;
+  for (const Eigen::Vector3f& p : mesh.positions) chosen.push_back(inside(body.toHead(p.cast<double>())));
+  const std::size_t first = mesh.positions.size();
+  halveEdges(chosen, mesh);
+  const auto field = [&](const Vec3& p) { return body.value(p); };
+  for (std::size_t v = first; v < mesh.positions.size(); ++v) {
+    Vec3 at = mesh.positions[v].cast<double>(), normal = Vec3::Zero();
+    projectToSurface(field, kFaceStep, at, normal);
+    mesh.positions[v] = at.cast<float>(), mesh.normals[v] = normal.cast<float>();
+  }
 }
 
 }  // namespace
 
 SkinnedMesh withFineFace(const SkinnedMesh& mesh, const BodyField& body) {
   SkinnedMesh fine = mesh;
-  std::vector<bool> inside;
-  for (const Eigen::Vector3f& p : mesh.positions) inside.push_back(inFace(body, p));
-  halveEdges(inside, fine);
-  const auto field = [&](const Vec3& p) { return body.value(p); };
-  for (std::size_t v = mesh.positions.size(); v < fine.positions.size(); ++v) {
-    Vec3 at = fine.positions[v].cast<double>(), normal = Vec3::Zero();
-    projectToSurface(field, kFaceStep, at, normal);
-    fine.positions[v] = at.cast<float>(), fine.normals[v] = normal.cast<float>();
-  }
+  refine(inFace, body, fine);
+  refine(inFolds, body, fine);
   return fine;
 }
 

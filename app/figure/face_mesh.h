@@ -6,8 +6,8 @@
 
 namespace app {
 
-// The mesh with the face's edges halved and its vertices on the body's surface; all else stays. Vertices are added at
-// the end.
+// The mesh with the face's edges halved, those about mouth and nose twice, and the new vertices on the body's surface;
+// all else stays. Vertices are added at the end.
 SkinnedMesh withFineFace(const SkinnedMesh& mesh, const BodyField& body);
 
 }  // namespace app

@@ -47,7 +47,10 @@ std::string formatted(const char* format, double a, double b = 0) {
 // "3,7,9", for an option.
 std::string commaList(const std::vector<int>& numbers) {
   std::string text;
-  for (const int number : numbers) text += (text.empty() ? "" : ",") + std::to_string(number);
+  for (const int number : numbers) {
+    if (!text.empty()) text += ',';
+    text += std::to_string(number);
+  }
   return text;
 }
 

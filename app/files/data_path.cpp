@@ -26,7 +26,7 @@ std::string findFile(const std::string& name, const std::string& base_file, cons
   const fs::path beside = base_file.empty() ? given : fs::path(base_file).parent_path() / given;
   std::error_code ignored;
   for (const fs::path& candidate :
-       {beside, given, fs::path(dataFolder()) / given, fs::path(dataFolder()) / "assets" / kind / given}) {
+       {beside, fs::path(dataFolder()) / given, fs::path(dataFolder()) / "assets" / kind / given}) {
     if (fs::exists(candidate, ignored)) return candidate.lexically_normal().string();
   }
   return name;

@@ -13,6 +13,7 @@ namespace {
 constexpr double kLargestCoordinate = 1e3;  // m
 constexpr std::string_view kLayerPrefix = "layer_", kBundlePrefix = "bundle_", kOffsetPrefix = "#groom_offset ",
                            kSharePrefix = "#look_share ";
+constexpr const char* kShares = "give those of clump, curl and frizz, and of width where it differs";
 
 bool isObjBlank(char c) {
   return c == ' ' || c == '\t' || c == '\r' || c == '\v' || c == '\f';
@@ -86,10 +87,15 @@ void ObjReader::readOffset(std::string_view rest) {
 void ObjReader::readShare(std::string_view rest) {
   if (out.positions.empty()) fail("the look shares belong to no vertex", "put them after the vertex's line");
   Eigen::Vector4d share = Eigen::Vector4d::Ones();
-  for (int k = 0; k < 3; ++k) share[k] = coordinate(nextWord(rest));
-  if (const std::string_view width = nextWord(rest); !width.empty()) share[3] = coordinate(width);
-  if (share.minCoeff() < 0 || share.maxCoeff() > 1)
-    fail("the look shares are not from 0 to 1", "give those of clump, curl and frizz, and of width where it differs");
+  int given = 0;
+  for (std::string_view word = nextWord(rest); !word.empty(); word = nextWord(rest), ++given) {
+    double value = -1;
+    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
+    if (error != std::errc() || end != word.data() + word.size() || !(value >= 0 && value <= 1))
+      fail("the look share " + quoted(word) + " is not from 0 to 1", kShares);
+    if (given < 4) share[given] = value;
+  }
+  if (given < 3 || given > 4) fail("there are " + std::to_string(given) + " look shares", kShares);
   out.shares.resize(out.positions.size(), Eigen::Vector4d::Ones());
   out.shares.back() = share;
 }

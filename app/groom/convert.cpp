@@ -164,7 +164,8 @@ std::string characterLine(const LookFit& look) {
       100 * all.clump, lessElsewhere(look, &ColumnShare::clump).c_str());
   text += part;
   if (look.taper >= 0) {
-    std::snprintf(part, sizeof part, ", tips %.2f as thick as roots", look.taper);
+    std::snprintf(part, sizeof part, ", %.3g mm wide at the roots (the look's strand_radius stays), tips %.2f of it",
+                  2e3 * look.radius, look.taper);
     text += part;
   }
   if (const std::string thinner = lessElsewhere(look, &ColumnShare::width); !thinner.empty())

@@ -100,12 +100,18 @@ FieldFiles fieldsOf(const std::vector<ColumnShare>& shares, const sim::HairMeshS
   return fields;
 }
 
-// Of a hair mesh with a preset of its name beside it, as hairmesh-convert writes: where its strands' curls are.
+// Of a hair mesh with a preset of its name beside it, as hairmesh-convert writes, whose look it does not have: where
+// that is.
 std::string lookBeside(const CharacterSpec& spec) {
   const std::string preset = std::filesystem::path(spec.hair).replace_extension(".json").string();
-  if (!(spec.look.hair == render::HairLook{}) || !std::filesystem::is_regular_file(preset)) return "";
+  if (!std::filesystem::is_regular_file(preset)) return "";
   try {
     if (!presetSections(preset).hair) return "";
+    sim::SimParams sim;
+    SceneLook scene;
+    CharacterLook look = spec.look, *looks[] = {&look};
+    loadPreset(preset, {&sim, &scene, looks});
+    if (look == spec.look) return "";
   } catch (const InputError&) {
     return "";
   }

@@ -352,7 +352,7 @@ void message(NoticePlace& place, Demo& demo, UiState& ui) {
   if (ImGui::Begin("message", nullptr, flags & ~ImGuiWindowFlags_NoBringToFrontOnFocus)) {
     ImGui::BringWindowToDisplayFront(ImGui::GetCurrentWindow());
     noteItem("message", ui);
-    ImGui::PushTextWrapPos(wrap);
+    ImGui::PushTextWrapPos(ImGui::GetCursorPosX() + wrap);  // counted from the window's edge
     ImGui::TextUnformatted(text.c_str());
     ImGui::PopTextWrapPos();
     if (fault) {

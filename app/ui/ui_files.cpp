@@ -251,6 +251,9 @@ void browseToSave(const Demo& demo, UiState& ui) {
   }
   browseFor(BrowseFor::kSaveScene, ui);
   if (!own && fs::exists(file, ignored)) browser.project = holdsProject(file.string());
+  // A scene has no strokes on tied hair.
+  browser.project |= std::ranges::any_of(
+      demo.actors, [](const Actor& actor) { return !actor.spec.ties.empty() && reshapedByHand(*actor.haircut); });
   setName(file.empty() ? demo.scene.name : own ? file.stem().string() : file.filename().string(), browser);
 }
 

@@ -329,8 +329,9 @@ void tieRow(const Actor& actor, Demo& demo, UiState& ui) {
     postRequest(demo, {Ask::kTie, "", writeTies(wanted).dump()});
   };
   const bool hangs = !braided && !bun;
-  if (pressed >= 0 && hangs) postRequest(demo, {Ask::kTie, "", kNames[pressed]});
-  if (pressed >= 0 && !hangs) post(tiesFromText(kNames[pressed]));
+  const bool other = pressed >= 0 && pressed != chosen;
+  if (other && hangs) postRequest(demo, {Ask::kTie, "", kNames[pressed]});
+  if (other && !hangs) post(tiesFromText(kNames[pressed]));
   BrushState& brush = ui.brush;
   rowLabel("By hand", "Puts the ring where the button is let go on the hair; with Mirror (Brushes) one on each side");
   if (ImGui::Button(brush.tie ? "Drag on the hair" : "Put ring", {-1, 0})) {

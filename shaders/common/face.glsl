@@ -61,7 +61,7 @@ vec2 lips(vec2 m, float pixel) {
   float soft = 0.003 + pixel;
   float lip = smoothstep(lower - soft, lower + soft, m.y) * (1.0 - smoothstep(upper - soft, upper + soft, m.y)) *
               smoothstep(0.0, 0.12, across);
-  return vec2(lip, band(m.y - seam, 0.0018, 0.0026 + pixel) * (1.0 - smoothstep(0.092, 0.106, m.x)));
+  return vec2(lip, band(m.y - seam + 0.0030, 0.0040, 0.0035 + pixel) * (1.0 - smoothstep(0.092, 0.106, m.x)));
 }
 
 // The share of the albedo that paint leaves, and in w what is left of the roughness. `brow_color`: of the brows' hairs.

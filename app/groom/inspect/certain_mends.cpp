@@ -142,7 +142,10 @@ std::string mendText(const MendReport& report) {
   std::string text;
   for (const MendedFinding& one : report.findings) {
     const std::string label = one.done ? "mended" : "found";
-    const std::string mend = one.finding.mend.empty() ? "" : " (" + one.finding.mend + (one.done ? ")" : " mends it)");
+    const std::string& option = one.finding.mend;
+    const std::string mend = option.empty() ? ""
+                             : one.done     ? " (" + option + ")"
+                                            : " (--mends \"" + option + "\" mends it)";
     text += label + std::string(14 - label.size(), ' ') + one.finding.what + ": " + one.finding.text + mend + "\n";
   }
   return text;

@@ -238,6 +238,9 @@ TEST(HairFit, AHairMeshSaysThatItsStrandsLookIsBesideIt) {
   EXPECT_EQ(noteOf(), "") << "a scene is no look";
   app::writeFile(folder + "/hair.json", R"({"name": "hair", "hair": {"curl_radius": 0.01}})");
   EXPECT_NE(noteOf().find("look is in " + folder + "/hair.json"), std::string::npos) << noteOf();
+  spec.look.hair.frizz = 0.001f;
+  EXPECT_NE(noteOf(), "") << "another look";
+  spec.look.hair = {};
   spec.look.hair.curl_radius = 0.01f;
   EXPECT_EQ(noteOf(), "") << "it was opened already";
 }

@@ -183,7 +183,10 @@ TEST(StrandPlaces, SharesAreReadBackToTheBitAndOthersRefused) {
   for (const auto& [line, fault] : {std::pair("#look_share 0 1.2 0\n", "not from 0 to 1"),
                                     {"#look_share -0.1 1 0\n", "not from 0 to 1"},
                                     {"#look_share 1 1 0 2\n", "not from 0 to 1"},
-                                    {"#look_share 1 x 0\n", "'x' is not a number"}}) {
+                                    {"#look_share 1 nan 0\n", "'nan' is not from 0 to 1"},
+                                    {"#look_share 1 1\n", "there are 2 look shares"},
+                                    {"#look_share 1 1 1 1 1\n", "there are 5 look shares"},
+                                    {"#look_share 1 x 0\n", "'x' is not from 0 to 1"}}) {
     try {
       readHairMesh(std::string(text).insert(text.find("#look_share"), line), "wrong.obj");
       FAIL() << line;
