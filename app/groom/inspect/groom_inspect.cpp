@@ -365,9 +365,8 @@ void Inspector::widths() {
   const double scale = std::pow(10.0, powers == 0 ? (middle < kThinnestHair ? 1 : -1) : powers);
   const bool certain = settled() && !leftAsTold("unit") && !inWorld();
   if (certain) result.mends.width_scale = static_cast<float>(scale);
-  const std::string wanted = plain ? textOf("hair is %.2g mm", 1e3 * kUsualWidth)
-                                   : textOf("so few strands may be %.2g mm at most", 1e3 * most);
-  add("widths", inJudged() + textOf("the strands are %.3g mm wide; ", 1e3 * middle) + wanted,
+  const double wanted = plain ? kUsualWidth : std::sqrt(kUsualWidth * most);  // wider where they are few
+  add("widths", inJudged() + textOf("the strands are %.3g mm wide; %.2g mm is usual", 1e3 * middle, 1e3 * wanted),
       textOf("--width-scale %g", scale), certain);
   result.findings.back().fault = !inWorld();  // few strands are drawn wide
 }
