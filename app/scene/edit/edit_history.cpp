@@ -96,7 +96,7 @@ std::string capitalized(std::string words) {
 std::string titleOf(const Request& request, const EditKind& kind) {
   if (request.what == Ask::kSetParam) return rowTitle(request.name) + " " + rowValue(request.name, request.text);
   if (request.what == Ask::kBrush) return capitalized(request.name);
-  if (request.what == Ask::kMove) return kind.title + (" " + request.name);
+  if (request.what == Ask::kMove) return capitalized(kind.title + (" " + request.name));
   if (request.what == Ask::kMesh) return capitalized(spaced(request.name));
   if (request.what == Ask::kAttach && request.text == "[]") return "Nothing worn";
   if (request.what == Ask::kBody) return "Body " + (request.text.empty() ? "by its outline" : request.text);
