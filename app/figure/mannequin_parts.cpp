@@ -85,7 +85,7 @@ struct Sorter {
     add("chin", m.roles.head, ellipsoidAt(fromHead({0, 0.17, 0.17}), level, body.head_scale * Vec3(0.19, 0.16, 0.18)),
         0.02, [&](const Vec3& p, const RegionValues& r) {
           const Vec3 q = body.toHead(p);
-          return q.y() < 0.28 && q.z() > 0.02 && r.head < r.neck;
+          return q.y() > -0.03 && q.y() < 0.28 && q.z() > 0.02 && r.head < r.neck;
         });
     const int neck =
         m.roles.head_is_neck || m.roles.spine.size() < 2 ? m.roles.head : m.roles.spine[m.roles.spine.size() - 2];
