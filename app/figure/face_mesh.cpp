@@ -10,7 +10,7 @@ namespace app {
 
 namespace {
 
-constexpr double kFaceStep = 0.002;  // m: the farthest that a vertex in the middle of an edge is moved
+constexpr double kFaceStep = 0.002;  // m, of each of the two steps that bring a new vertex to the surface
 
 bool inFace(const Vec3& q) {
   return q.z() > 0.17 && q.y() > -0.02 && q.y() < 0.66;

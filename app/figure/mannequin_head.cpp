@@ -81,9 +81,9 @@ double headWithoutEars(const Vec3& q) {
   // The jaw: from the chin to its angles, and up to the ears.
   static const Eigen::Matrix3d jaw_tilt = Eigen::AngleAxisd(0.40, Vec3::UnitX()).toRotationMatrix();
   d = smoothMin(d, egg(jaw_tilt.transpose() * (q - Vec3(0, 0.190, 0.150)), Vec3(0.182, 0.108, 0.205)), 0.10);
-  static const RoundCone body{Vec3(0.120, 0.234, 0.092), Vec3(0.042, 0.084, 0.260), 0.054, 0.048};
-  static const RoundCone branch{Vec3(0.120, 0.234, 0.092), Vec3(0.196, 0.400, 0.070), 0.054, 0.066};
-  d = smoothMin(d, smoothMin(body.value(m), branch.value(m), 0.08), 0.15);
+  static const RoundCone jaw_body{Vec3(0.120, 0.234, 0.092), Vec3(0.042, 0.084, 0.260), 0.054, 0.048};
+  static const RoundCone jaw_branch{Vec3(0.120, 0.234, 0.092), Vec3(0.196, 0.400, 0.070), 0.054, 0.066};
+  d = smoothMin(d, smoothMin(jaw_body.value(m), jaw_branch.value(m), 0.08), 0.15);
   d = smoothMin(d, egg(q - Vec3(0, 0.074, 0.290), Vec3(0.070, 0.054, 0.064)), 0.08);        // chin
   d = smoothMin(d, egg(m - Vec3(0.176, 0.402, 0.192), Vec3(0.098, 0.086, 0.112)), 0.13);    // cheeks
   d = smoothMin(d, egg(m - Vec3(0.098, 0.592, 0.244), Vec3(0.112, 0.058, 0.074)), 0.10);    // brows

@@ -97,7 +97,7 @@ void stabilize(const TakenStep& step, const StepInput& input, bool converged, St
   if (nets.stretch_limit && step.params.volume > 0) limitStretch(step.mesh, scratch.reach, state);
   if (nets.inversion_recovery && step.params.volume > 0) {
     const bool looks = windLoad(step.params) < kStorm;
-    report.guided = recoverInversions({step.mesh, step.positions, step.dt, looks, input.pins}, scratch.touched, state);
+    report.guided = recoverInversions({step.mesh, step.positions, step.dt, looks, step.pins}, scratch.touched, state);
   }
   if (nets.result_repair)
     repairState(step.mesh, step.model, input.roots, {step.positions, step.velocities}, false, scratch, state, report);
