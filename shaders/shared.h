@@ -105,6 +105,7 @@ const float kSkinWhole = 0.15;   // the same: all farther off are lifted whole
 const float kSkinBack = 0.005;   // m, of a lift: a strand lifted by more keeps to that side
 const float kSkinReturn = 0.15;  // m of hair over which a strand returns from where it was lifted: to a share of 1/e
 const int kSkinRounds = 8;       // ellipsoids that meet push a point to and fro
+const int kSkinTurns = 4;        // of these rounds; after them all push along one line
 
 // Scattering table (fiber_scattering.h). Slices 0 to 2: N_p of R, TT, TRT: kScatterPhi angles over [0, pi],
 // kScatterTheta cosines over [0, 1]. Slice 3: first row: norms of the lobes over kScatterPhi inclinations in [-pi/2,

@@ -13,7 +13,7 @@ namespace render {
 using Eigen::Vector3f;
 using Eigen::Vector4f;
 using shared::kSkinBack, shared::kSkinBlend, shared::kSkinGap, shared::kSkinLeft, shared::kSkinFar, shared::kSkinMiddle,
-    shared::kSkinReturn, shared::kSkinRounds, shared::kSkinWhole;
+    shared::kSkinReturn, shared::kSkinRounds, shared::kSkinTurns, shared::kSkinWhole;
 
 namespace {
 
@@ -28,8 +28,10 @@ Vector3f turnedBack(const std::array<std::array<float, 4>, 3>& rows, const Vecto
   return v.x() * row(0) + v.y() * row(1) + v.z() * row(2);
 }
 
-// back: the way that the strand's point before was lifted, which leads in the middle (shaders/common/skin.glsl).
-std::optional<WayOut> wayOutOf(const SkinEllipsoid& e, const Vector3f& point, const Vector3f& back, float blend) {
+// back: the way that the strand's point before was lifted, which leads in the middle (shaders/common/skin.glsl). line:
+// a unit vector that the way follows, or zero.
+std::optional<WayOut> wayOutOf(const SkinEllipsoid& e, const Vector3f& point, const Vector3f& back,
+                               const Vector3f& line, float blend) {
   const Eigen::Map<const Vector4f> a(e.to_ball[0].data()), b(e.to_ball[1].data()), c(e.to_ball[2].data());
   const Vector4f p = point.homogeneous();
   const Vector3f ball(a.dot(p), b.dot(p), c.dot(p));
@@ -37,8 +39,9 @@ std::optional<WayOut> wayOutOf(const SkinEllipsoid& e, const Vector3f& point, co
   if (squared > kSkinFar) return {};
   const Vector3f from = ball + std::max(1.0f - squared, 0.0f) * Eigen::Map<const Vector3f>(e.home.data());
   const float off = from.squaredNorm();
-  const Vector3f leads =
+  Vector3f leads =
       std::sqrt(off) * turnedBack(e.to_ball, from).normalized() + (1 - smoothstep(kSkinMiddle, kSkinWhole, off)) * back;
+  if (!line.isZero(0)) leads = line;
   const float sure = leads.squaredNorm();
   if (sure < kSkinMiddle) return {};
   const Vector3f out_of = leads / std::sqrt(sure);
@@ -100,23 +103,26 @@ void leaveSkin(std::span<const SkinEllipsoid> skin, std::span<const SkinGrid> gr
   position += lift.by;
   tangent -= lift.by / kSkinReturn;
   Vector3f lifted = position, turned = tangent;
-  Vector3f by_grids = Vector3f::Zero();
+  Vector3f by_grids = Vector3f::Zero(), together = by_grids, line = by_grids;
   bool moved = true;
   const SkinEllipsoid* last = nullptr;
   for (int round = 0; round < kSkinRounds && moved; ++round) {
     moved = false;
     const float blend = round == 0 ? kSkinBlend : 0.0f;
+    if (round == kSkinTurns && together.squaredNorm() > kSkinMiddle) line = together.normalized();
+    together.setZero();
     // Returns what it is moved by.
     const auto take = [&](const WayOut& way) -> Vector3f {
       const float bent = std::max(way.gap + blend, 0.0f) / (2 * kSkinBlend);
       const Vector3f by = way.share * (kSkinBlend * bent * bent - way.gap) * way.along;
       lifted += by;
+      together += way.along;
       turned += way.share * (bent - 1) * way.normal.dot(turned) * way.normal;
       moved = true;
       return by;
     };
     for (const SkinEllipsoid& e : skin) {
-      const auto way = &e == last ? std::nullopt : wayOutOf(e, lifted, back, blend);
+      const auto way = &e == last ? std::nullopt : wayOutOf(e, lifted, back, line, blend);
       if (!way) continue;
       take(*way);
       last = &e;

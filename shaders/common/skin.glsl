@@ -15,8 +15,9 @@ struct WayOut {
 };
 
 // False where the point is not lifted out of ellipsoid i. In the middle the way out turns about. There `back` leads: the
-// way that the strand's point before was lifted, shorter than 1, and the shorter the less that one was lifted.
-bool wayOutOfBall(int i, vec3 point, vec3 back, float blend, out WayOut way) {
+// way that the strand's point before was lifted, shorter than 1, and the shorter the less that one was lifted. line: a
+// unit vector that the way follows, or zero.
+bool wayOutOfBall(int i, vec3 point, vec3 back, vec3 line, float blend, out WayOut way) {
   vec4 a = skin_rows[4 * i], b = skin_rows[4 * i + 1], c = skin_rows[4 * i + 2], p = vec4(point, 1.0);
   vec3 ball = vec3(dot(a, p), dot(b, p), dot(c, p));
   float squared = dot(ball, ball);
@@ -26,6 +27,7 @@ bool wayOutOfBall(int i, vec3 point, vec3 back, float blend, out WayOut way) {
   vec3 out_of = from.x * a.xyz + from.y * b.xyz + from.z * c.xyz;
   vec3 leads = off > 0.0 ? sqrt(off) * normalize(out_of) : vec3(0.0);
   leads += (1.0 - smoothstep(kSkinMiddle, kSkinWhole, off)) * back;
+  if (line != vec3(0.0)) leads = line;
   float sure = dot(leads, leads);
   if (sure < kSkinMiddle) return false;
   way.along = leads / sqrt(sure);
@@ -84,7 +86,9 @@ bool wayOutOfGrid(int i, vec3 point, vec3 back, float blend, out WayOut way) {
 // back along the strand. The gap is exact, to where the way meets the surface, in the ellipsoid's own measure. s: curve
 // parameter, in layers; the first layer leads from the root, which stays, to full lift; by grids the root is lifted as
 // well, for between the corners of a face of roots a box bulges. Further rounds, without the parabola, take up what one
-// ellipsoid pushes into another: none pushes twice running; a grid may, for its distances are not exact.
+// ellipsoid pushes into another: none pushes twice running; a grid may, for its distances are not exact. Where three
+// meet, they may push a point round for ever: after kSkinTurns rounds every ellipsoid is left along one line, the mean of
+// the last round's ways.
 //
 // A strand keeps its side: each point begins where the one before it was lifted, and returns with the hair's length.
 // So the tip of a strand that lies over a shoulder does not end in it, or below it.
@@ -102,12 +106,14 @@ void leaveSkin(uvec2 near, float s, inout SkinLift lift, inout vec3 position, in
   position += lift.by;
   tangent -= lift.by / kSkinReturn;
   vec3 lifted = position, turned = tangent;
-  vec3 by_grids = vec3(0.0);
+  vec3 by_grids = vec3(0.0), together = vec3(0.0), line = vec3(0.0);
   bool moved = near != uvec2(0u);
   int last = -1;
   for (int round = 0; round < kSkinRounds && moved; ++round) {
     moved = false;
     float blend = round == 0 ? kSkinBlend : 0.0;
+    if (round == kSkinTurns && dot(together, together) > kSkinMiddle) line = normalize(together);
+    together = vec3(0.0);
     for (int word = 0; word < 2; ++word)
       for (uint left = word == 0 ? near.x : near.y; left != 0u; left &= left - 1u) {
         int i = 32 * word + findLSB(left);
@@ -117,12 +123,13 @@ void leaveSkin(uvec2 near, float s, inout SkinLift lift, inout vec3 position, in
         if (grid) {
           if (!wayOutOfGrid(i - kMaxSkin, lifted, back_in_grid, blend, way)) continue;
         } else {
-          if (!wayOutOfBall(i, lifted, back, blend, way)) continue;
+          if (!wayOutOfBall(i, lifted, back, line, blend, way)) continue;
         }
         float bent = max(way.gap + blend, 0.0) / (2.0 * kSkinBlend);
         vec3 by = way.share * (kSkinBlend * bent * bent - way.gap) * way.along;
         lifted += by;
         if (grid) by_grids += by;
+        together += way.along;
         turned += way.share * (bent - 1.0) * dot(way.normal, turned) * way.normal;
         moved = true;
         last = grid ? -1 : i;

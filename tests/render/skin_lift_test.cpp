@@ -139,6 +139,43 @@ TEST(SkinLift, NoPointPopsAsTheSkinMoves) {
   EXPECT_LT(movesOf({turnedEllipsoid(), synthetic::skinBall({0.03f, 0.05f, 0}, 0.05f)}).outer, 5 * kStep);
 }
 
+// Behind a shoulder, where ellipsoids of chest, shoulder blade and skin meet: each leads a point into the next.
+TEST(SkinLift, PointsThatEllipsoidsPushRoundLeaveAllAlongOneLine) {
+  const std::vector<SkinEllipsoid> skin{
+      {{{{3.519f, 1.558f, -4.621f, 0.9679f}, {-1.974f, 5.460f, 0.338f, 0.1709f}, {6.059f, 1.866f, 5.242f, 0.2073f}}},
+       {0.064f, 2.938f, 0.601f}},
+      {{{{5.319f, 1.305f, 0.406f, 0.5274f}, {-1.781f, 7.004f, 0.825f, -0.1818f}, {-0.387f, -1.120f, 8.674f, -0.9015f}}},
+       {-0.015f, 2.990f, 0.245f}},
+      {{{{4.863f, 1.079f, 0.435f, 0.4678f},
+         {-2.850f, 12.457f, 0.971f, -1.2708f},
+         {-0.812f, -1.108f, 11.835f, -1.2591f}}},
+       {-0.046f, 2.974f, 0.390f}},
+      {{{{12.554f, 2.219f, 5.158f, 0.1707f},
+         {-2.166f, 9.435f, 1.212f, -0.0491f},
+         {-8.274f, -4.748f, 22.180f, -1.0753f}}},
+       {-0.484f, 2.389f, 1.749f}},
+      {{{{-55.418f, -46.787f, 55.146f, 0.1955f},
+         {-29.187f, 37.440f, 2.434f, 0.4018f},
+         {-7.291f, -4.936f, -11.515f, 0.6901f}}},
+       {0.000f, 0.000f, -0.000f}},
+      {{{{72.980f, 37.825f, -102.385f, -0.3889f},
+         {-11.866f, 27.113f, 1.559f, 0.1599f},
+         {19.492f, 7.571f, 16.691f, 0.0687f}}},
+       {-0.000f, 0.000f, 0.000f}}};
+  int left = 0, all = 0;
+  for (float x = -0.01f; x < 0.0101f; x += 0.002f) {
+    for (float y = -0.01f; y < 0.0101f; y += 0.002f) {
+      for (float z = -0.01f; z < 0.0101f; z += 0.002f) {
+        const Vector3f after = lifted(skin, 2, {x, y, z});
+        ++all;
+        left += std::ranges::any_of(skin, [&](const SkinEllipsoid& e) { return gapOf(e, after) < -0.001f; });
+      }
+    }
+  }
+  EXPECT_EQ(all, 1331);
+  EXPECT_LT(left, 0.01 * all);  // a seventh, each along its own way
+}
+
 // A lock that hangs on both sides of a shoulder: its strands cross the middle of the ellipsoid, or pass below it.
 TEST(SkinLift, WhatRunsThroughTheMiddleIsLedOverTheSideThatHairComesFrom) {
   SkinEllipsoid skin = synthetic::skinBall({0, 0, 0}, 0.1f);
