@@ -123,7 +123,8 @@ std::string mendedByItself(const CLI::App& parser, const Asked& asked, const app
   for (const app::GroomFinding& finding : inspection.findings) {
     const std::string option = finding.mend.substr(0, finding.mend.find(' '));
     const bool done = finding.certain && option.starts_with("--") && !asked.no_guess && parser.count(option) == 0;
-    if (done) mended += (mended.empty() ? "" : " ") + finding.mend;
+    if (done && (mended + " ").find(finding.mend + " ") == std::string::npos)
+      mended += (mended.empty() ? "" : " ") + finding.mend;
   }
   return mended;
 }

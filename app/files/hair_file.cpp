@@ -48,7 +48,8 @@ struct Stacker {
 
 void Stacker::checkLayers() const {
   if (obj.layers.empty() || obj.layers.begin()->first != 0)
-    throw InputError(file, "", "it has no layer_0, the scalp", "group the root faces under 'g layer_0'");
+    throw InputError(file, "", "it has no layer_0, the scalp",
+                     "group the root faces under 'g layer_0'; of curves and cards hairmesh-convert makes such a file");
   int expected = 0;
   for (const auto& [number, layer] : obj.layers) {
     if (number != expected)

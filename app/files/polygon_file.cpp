@@ -195,7 +195,8 @@ PolygonMesh readPolygons(const std::string& file) {
   if (endingOf(file) == ".obj") gatherer.out.note = libraryNote(readText(file), file);
   if (gatherer.out.faceCount() == 0)
     throw InputError(file, "", "holds no faces",
-                     "give a mesh with faces: hair as strips of quads or tubes, one a lock");
+                     "give a mesh with faces: hair as strips of quads or tubes, one a lock; curves come as .hair, "
+                     ".abc, .usda, .tfx or .ply");
   return std::move(gatherer.out);
 }
 

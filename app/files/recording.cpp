@@ -9,6 +9,7 @@
 
 #include "app/files/errors.h"
 #include "app/files/json_reader.h"
+#include "app/files/report_line.h"
 #include "app/files/text_file.h"
 #include "sim/field_text.h"
 
@@ -444,7 +445,7 @@ double Tape::turn(int frame, double seconds, Demo& demo) {
 
 Tape::End Tape::end(const Demo& demo) {
   End end;
-  const std::string state = stateHash(demo), count = std::to_string(turns_) + " frames";
+  const std::string state = stateHash(demo), count = countOf(turns_, "frame");
   if (record_) {
     write(endsLine(columnEnds(demo)) + "\n");
     written_.add(state);

@@ -113,6 +113,7 @@ Run::Run(Scene scene, const Options& run_options) : options(run_options), tape(o
   if (options.keep_frames) folder.emplace(options.out, "choose another with --out DIR");
   if (!options.video.empty()) film.emplace(options.video, options.width, options.height, report.fps);
   if (!options.save_state.empty()) checkWritable(options.save_state);
+  if (!options.hair_export.file.empty()) checkWritable(options.hair_export.file);
   demo = openForPictures(std::move(scene), options, tape.aspect());
   if (!options.load_state.empty()) {
     const bool keep_view = !options.camera.empty() || !options.framing.empty();

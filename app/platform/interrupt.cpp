@@ -6,6 +6,8 @@
 #include <iostream>
 #include <limits>
 
+#include "app/files/report_line.h"
+
 namespace app {
 
 namespace {
@@ -47,9 +49,10 @@ bool interrupted() {
 
 bool endedEarly(int frames, int asked) {
   if (!interrupted() || frames >= asked) return false;
-  std::cout << "interrupted after " << frames;
-  if (asked < std::numeric_limits<int>::max()) std::cout << " of " << asked;
-  std::cout << " frames\n";
+  const bool endless = asked == std::numeric_limits<int>::max();
+  std::cout << "interrupted after ";
+  if (!endless) std::cout << frames << " of ";
+  std::cout << countOf(endless ? frames : asked, "frame") << "\n";
   return true;
 }
 

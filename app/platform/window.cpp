@@ -484,8 +484,8 @@ int runWindow(Scene scene, const Options& options) {
     hair.frame(demo);
     if (frame + 1 == options.save_state_at) writeFile(options.save_state, demoStateBytes(demo));
     if (!options.report.empty()) run.frames.push_back(demo.stats);
-    last_frame = frame + 1 >= most || interrupted();
-    if (last_frame && options.frames_given) writeWindow(options.screenshot, target);
+    last_frame = frame + 1 >= most || interrupted() || glfwWindowShouldClose(window.handle) || ui.quit;
+    if (last_frame && !options.screenshot.empty()) writeWindow(options.screenshot, target);
     glfwSwapBuffers(window.handle);
   }
   pictures.close(demo);

@@ -183,7 +183,7 @@ void take(const std::string& file, Demo& demo, UiState& ui) {
       break;
     case BrowseFor::kSaveScene:
       postRequest(demo, {browser.project ? Ask::kSaveProject : Ask::kSaveScene, "", file});
-      browser.last = file;
+      browser.last = browser.saving = file;
       ui.asked.push_back(file);
       break;
   }
@@ -265,6 +265,17 @@ void openFile(const std::string& file, Demo& demo, UiState& ui) {
   ui.asked.push_back(file);
 }
 
+namespace {
+
+void askAgain(const FileEnd& end, std::string& saving, UiState& ui) {
+  saving.clear();
+  if (end.done || ui.browser.what != BrowseFor::kNothing) return;
+  browseFor(BrowseFor::kSaveScene, ui);
+  setName(end.file, ui.browser);
+}
+
+}  // namespace
+
 void noteFiles(Demo& demo, UiState& ui) {
   for (const FileEnd& end : std::exchange(demo.file_ends, {})) {
     if (end.file == ui.to_go_on_from) {
@@ -272,6 +283,7 @@ void noteFiles(Demo& demo, UiState& ui) {
       ui.to_go_on_from.clear();
       if (end.done) demo.edits.saved = kNeverSaved;
     }
+    if (end.file == ui.browser.saving) askAgain(end, ui.browser.saving, ui);
     if (std::erase(ui.asked, end.file) == 0) continue;
     (end.done ? noteRecent : forgetRecent)(end.file, ui.kept_folder, ui.recent);
   }

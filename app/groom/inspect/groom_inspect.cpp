@@ -117,7 +117,7 @@ void Inspector::strands() {
     add("hidden", countOf(hints.hidden, "object") + " of curves that the file does not show are left out", "", false);
     result.findings.back().fault = false;
   }
-  if (all < kMinRoots) add("strands", countText(all, kMinRoots, "that a hair mesh is made of at the least"), "", false);
+  if (all < kMinRoots) add("strands", countOf(all, "strand") + ", and a hair mesh takes 20 or more", "", false);
   result.mends.drop_bad = ends.non_finite + ends.zero_length + ends.too_short > 0;
   std::size_t many = 0;
   for (std::size_t s = 0; s < all; ++s) many += groom.pointCount(s) > kManyPoints;
@@ -130,7 +130,7 @@ void Inspector::astray() {
   for (std::size_t n = 0; n < std::min(kNumbersTold, ends.astray.size()); ++n)
     numbers += (n == 0 ? ": number " : ", ") + std::to_string(ends.astray[n]);
   if (ends.astray.size() > kNumbersTold) numbers += ", ...";
-  add("astray", countText(ends.astray.size(), groom.strandCount(), "lie apart from all others") + numbers,
+  add("astray", countText(ends.astray.size(), groom.strandCount(), "lie apart from all others, or leap") + numbers,
       "--drop-astray", true);
   result.mends.drop_astray = true;
 }
@@ -244,8 +244,8 @@ void Inspector::unitOfSkull(double told) {
   } else if (!fits) {
     judged = likely;
     addGuess("unit",
-             textOf("the roots lie about a skull of radius %.3g m, which no unit brings to a head's size",
-                    skull.radius * told),
+             textOf("the roots lie about a skull of radius %.3g m; no unit makes that a head, --scale %.3g does",
+                    skull.radius * told, kSkullRadius / (skull.radius * told)),
              "--unit m|cm|mm|in|ft", onCap() || strange, false);
   }
 }

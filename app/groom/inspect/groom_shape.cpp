@@ -92,6 +92,8 @@ float groomSize(const Groom& groom) {
 
 namespace {
 
+constexpr float kLeap = 0.75f;  // of the box's largest side, from a point to the next
+
 // The box about those strands that strandEnds describes.
 Eigen::AlignedBox3f boxOfMost(const Groom& groom, const std::vector<std::size_t>& strands) {
   constexpr double kOutermost = 0.02;
@@ -117,8 +119,12 @@ Eigen::AlignedBox3f boxOfMost(const Groom& groom, const std::vector<std::size_t>
 std::vector<std::size_t> takeAstray(const Groom& groom, std::vector<std::size_t>& strands) {
   if (strands.size() < kMinRoots) return {};
   const Eigen::AlignedBox3f box = boxOfMost(groom, strands);
+  const float leap = kLeap * box.sizes().maxCoeff();
   const auto isAstray = [&](std::size_t s) {
-    return std::ranges::none_of(groom.strand(s), [&](const Vector3f& p) { return box.contains(p); });
+    const std::span<const Vector3f> points = groom.strand(s);
+    for (std::size_t p = 1; p < points.size(); ++p)
+      if ((points[p] - points[p - 1]).norm() > leap) return true;
+    return std::ranges::none_of(points, [&](const Vector3f& p) { return box.contains(p); });
   };
   std::vector<std::size_t> astray;
   std::ranges::copy_if(strands, std::back_inserter(astray), isAstray);

@@ -428,12 +428,27 @@ TEST(GroomInspect, NamesStrandsThatLieApartAndJudgesByTheOthers) {
     for (Vector3f& point : std::span(groom.points).subspan(groom.strand_first[10], 8)) point.x() += away;
     const app::GroomInspection inspection = app::inspectGroom(groom, {}, &model);
     ASSERT_TRUE(inspection.find("astray")) << away;
-    EXPECT_EQ(test::lacking(inspection.find("astray")->text, "1 of 300 strands lie apart from all others: number 10"),
+    EXPECT_EQ(test::lacking(inspection.find("astray")->text,
+                            "1 of 300 strands lie apart from all others, or leap: number 10"),
               "");
     EXPECT_EQ(inspection.findings.size(), 1u) << namesOf(inspection);
     app::mendGroom(inspection.mends, &model, groom);
     ASSERT_EQ(groom.strandCount(), 299u);
     EXPECT_EQ(groom.points.back(), whole.points.back());
+  }
+}
+
+TEST(GroomInspect, NamesAStrandOfWhichOnePointLeapsOutOfTheGroom) {
+  const app::HeadModel model = head();
+  for (const float away : {1.0f, 50.0f}) {
+    app::Groom groom = combedGroom(300, 12);
+    groom.points[groom.strand_first[10] + 4] += Vector3f::Constant(away);
+    const app::GroomInspection inspection = app::inspectGroom(groom, {}, &model);
+    ASSERT_TRUE(inspection.find("astray")) << away;
+    EXPECT_EQ(inspection.findings.size(), 1u) << namesOf(inspection);
+    app::mendGroom(inspection.mends, &model, groom);
+    EXPECT_EQ(groom.strandCount(), 299u);
+    EXPECT_LT(app::groomSize(groom), 1.0f);
   }
 }
 

@@ -142,6 +142,20 @@ TEST_F(Panels, ASceneIsSavedAndOneThatIsThereOnlyOnASecondPress) {
   }
 }
 
+TEST_F(Panels, WhereASaveFailsTheNameIsAskedForAgain) {
+  const std::string folder = test::freshFolder("ui_save_fails"), file = folder + "/no/such/mine.json";
+  ui_.browser.folder = folder;
+  click("file Save");
+  frame();
+  for (const char letter : std::string("no/such/mine")) ImGui::GetIO().AddInputCharacter(static_cast<unsigned>(letter));
+  frame();
+  apply(click("file_take"));
+  frame();
+  EXPECT_TRUE(demo_.message_is_fault) << demo_.message;
+  EXPECT_EQ(ui_.browser.what, app::BrowseFor::kSaveScene);
+  EXPECT_EQ(std::string(ui_.browser.name.data()), file);
+}
+
 // Ctrl+S, Enter, Enter.
 TEST_F(Panels, ASceneIsSavedOverItselfByTheKeyboard) {
   const std::string file = test::freshFolder("ui_save_again") + "/mine.json";
