@@ -12,6 +12,7 @@
 #include "app/groom/groom_file.h"
 #include "app/groom/groom_writer.h"
 #include "app/groom/inspect/certain_mends.h"
+#include "app/groom/inspect/groom_shape.h"
 #include "tests/app/groom/combed_groom.h"
 #include "tests/app/groom/groom_samples.h"
 #include "tests/run_program.h"
