@@ -285,7 +285,7 @@ TEST(OutputFile, ARecordingThatWasCutOffSaysSo) {
   app::writeFile(cut, whole.substr(0, end + 1));
   const test::Outcome between = test::runProgram({"--no-images", "--replay", cut});
   EXPECT_EQ(between.exit_code, 0) << between.err;
-  EXPECT_NE(between.out.find("replayed 1 frames of a recording that was cut off"), std::string::npos) << between.out;
+  EXPECT_NE(between.out.find("replayed 1 frame of a recording that was cut off"), std::string::npos) << between.out;
 }
 
 }  // namespace output_file_test

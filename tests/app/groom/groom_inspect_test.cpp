@@ -12,7 +12,6 @@
 #include "app/groom/groom_file.h"
 #include "app/groom/groom_writer.h"
 #include "app/groom/inspect/certain_mends.h"
-#include "app/groom/inspect/groom_shape.h"
 #include "tests/app/groom/combed_groom.h"
 #include "tests/app/groom/groom_samples.h"
 #include "tests/run_program.h"
@@ -419,38 +418,6 @@ TEST(GroomInspect, IsNotCertainOfDirectionsWithoutASkull) {
   const app::GroomInspection inspection = app::inspectGroom(groom, {}, nullptr);
   EXPECT_TRUE(!inspection.find("reversed") || !inspection.find("reversed")->certain);
   EXPECT_EQ(inspection.mends.reverse, app::Reverse::kNone);
-}
-
-TEST(GroomInspect, NamesStrandsThatLieApartAndJudgesByTheOthers) {
-  const app::HeadModel model = head();
-  for (const float away : {0.7f, 1.0f, 5.0f, 1000.0f}) {
-    const app::Groom whole = combedGroom(300, 12);
-    app::Groom groom = whole;
-    for (Vector3f& point : std::span(groom.points).subspan(groom.strand_first[10], 8)) point.x() += away;
-    const app::GroomInspection inspection = app::inspectGroom(groom, {}, &model);
-    ASSERT_TRUE(inspection.find("astray")) << away;
-    EXPECT_EQ(test::lacking(inspection.find("astray")->text,
-                            "1 of 300 strands lie apart from all others, or leap: number 10"),
-              "");
-    EXPECT_EQ(inspection.findings.size(), 1u) << namesOf(inspection);
-    app::mendGroom(inspection.mends, &model, groom);
-    ASSERT_EQ(groom.strandCount(), 299u);
-    EXPECT_EQ(groom.points.back(), whole.points.back());
-  }
-}
-
-TEST(GroomInspect, NamesAStrandOfWhichOnePointLeapsOutOfTheGroom) {
-  const app::HeadModel model = head();
-  for (const float away : {1.0f, 50.0f}) {
-    app::Groom groom = combedGroom(300, 12);
-    groom.points[groom.strand_first[10] + 4] += Vector3f::Constant(away);
-    const app::GroomInspection inspection = app::inspectGroom(groom, {}, &model);
-    ASSERT_TRUE(inspection.find("astray")) << away;
-    EXPECT_EQ(inspection.findings.size(), 1u) << namesOf(inspection);
-    app::mendGroom(inspection.mends, &model, groom);
-    EXPECT_EQ(groom.strandCount(), 299u);
-    EXPECT_LT(app::groomSize(groom), 1.0f);
-  }
 }
 
 // The program: what it says, what it writes, and how it ends.
