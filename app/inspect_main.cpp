@@ -82,7 +82,8 @@ void addOptions(CLI::App& parser, Asked& asked) {
   parser.add_option("--drop-far", asked.mends.drop_far, "Leave out strands whose root is further from the body, m")
       ->check(app::within(0, kFarthest));
   parser.add_flag("--drop-bad", asked.mends.drop_bad, "Leave out strands that are not finite or have no length");
-  parser.add_flag("--drop-astray", asked.mends.drop_astray, "Leave out strands that lie apart from all others");
+  parser.add_flag("--drop-astray", asked.mends.drop_astray,
+                  "Leave out strands that lie apart from all others, or have a point that does");
   parser.add_flag("--push-out", asked.mends.push_out, "Bring points that lie inside the body to its surface");
   parser
       .add_option("--flip-strips", asked.flipped, "Of strips and tubes, the numbers of those rooted at the other end")

@@ -34,7 +34,7 @@ struct FileBrowser {
   std::string to_replace;  // is there already and is written on the second press
   bool project = false;    // what is saved: all that moves as well
   std::string last;        // scene or project that was saved or opened last
-  std::string saving;      // is being written: where that fails its name is asked for again
+  std::string saving;      // scene or project that is being written; its name is asked for again where that fails
   bool opened = false;     // since the last frame: the name is ready to be typed
 };
 

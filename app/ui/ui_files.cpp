@@ -223,6 +223,13 @@ void nameRow(Demo& demo, UiState& ui, std::string chosen) {
   if (!chosen.empty()) take(chosen, demo, ui);
 }
 
+// Unless something else is asked for meanwhile.
+void nameAgain(const std::string& file, UiState& ui) {
+  if (ui.browser.what != BrowseFor::kNothing) return;
+  browseFor(BrowseFor::kSaveScene, ui);
+  setName(file, ui.browser);
+}
+
 }  // namespace
 
 void browseFor(BrowseFor what, UiState& ui) {
@@ -265,17 +272,6 @@ void openFile(const std::string& file, Demo& demo, UiState& ui) {
   ui.asked.push_back(file);
 }
 
-namespace {
-
-void askAgain(const FileEnd& end, std::string& saving, UiState& ui) {
-  saving.clear();
-  if (end.done || ui.browser.what != BrowseFor::kNothing) return;
-  browseFor(BrowseFor::kSaveScene, ui);
-  setName(end.file, ui.browser);
-}
-
-}  // namespace
-
 void noteFiles(Demo& demo, UiState& ui) {
   for (const FileEnd& end : std::exchange(demo.file_ends, {})) {
     if (end.file == ui.to_go_on_from) {
@@ -283,7 +279,10 @@ void noteFiles(Demo& demo, UiState& ui) {
       ui.to_go_on_from.clear();
       if (end.done) demo.edits.saved = kNeverSaved;
     }
-    if (end.file == ui.browser.saving) askAgain(end, ui.browser.saving, ui);
+    if (end.file == ui.browser.saving) {
+      ui.browser.saving.clear();
+      if (!end.done) nameAgain(end.file, ui);
+    }
     if (std::erase(ui.asked, end.file) == 0) continue;
     (end.done ? noteRecent : forgetRecent)(end.file, ui.kept_folder, ui.recent);
   }

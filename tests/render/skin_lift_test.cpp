@@ -139,9 +139,10 @@ TEST(SkinLift, NoPointPopsAsTheSkinMoves) {
   EXPECT_LT(movesOf({turnedEllipsoid(), synthetic::skinBall({0.03f, 0.05f, 0}, 0.05f)}).outer, 5 * kStep);
 }
 
-// Behind a shoulder, where ellipsoids of chest, shoulder blade and skin meet: each leads a point into the next.
-TEST(SkinLift, PointsThatEllipsoidsPushRoundLeaveAllAlongOneLine) {
-  const std::vector<SkinEllipsoid> skin{
+// Behind a shoulder, where ellipsoids of chest, shoulder blade and skin meet about a place: each leads a point into the
+// next.
+std::vector<SkinEllipsoid> ellipsoidsThatPushRound(const Vector3f& place) {
+  std::vector<SkinEllipsoid> skin{
       {{{{3.519f, 1.558f, -4.621f, 0.9679f}, {-1.974f, 5.460f, 0.338f, 0.1709f}, {6.059f, 1.866f, 5.242f, 0.2073f}}},
        {0.064f, 2.938f, 0.601f}},
       {{{{5.319f, 1.305f, 0.406f, 0.5274f}, {-1.781f, 7.004f, 0.825f, -0.1818f}, {-0.387f, -1.120f, 8.674f, -0.9015f}}},
@@ -162,6 +163,13 @@ TEST(SkinLift, PointsThatEllipsoidsPushRoundLeaveAllAlongOneLine) {
          {-11.866f, 27.113f, 1.559f, 0.1599f},
          {19.492f, 7.571f, 16.691f, 0.0687f}}},
        {-0.000f, 0.000f, 0.000f}}};
+  for (SkinEllipsoid& e : skin)
+    for (auto& row : e.to_ball) row[3] -= Vector3f(row.data()).dot(place);
+  return skin;
+}
+
+TEST(SkinLift, PointsThatEllipsoidsPushRoundLeaveAllAlongOneLine) {
+  const std::vector<SkinEllipsoid> skin = ellipsoidsThatPushRound(Vector3f::Zero());
   int left = 0, all = 0;
   for (float x = -0.01f; x < 0.0101f; x += 0.002f) {
     for (float y = -0.01f; y < 0.0101f; y += 0.002f) {
@@ -397,6 +405,17 @@ TEST_F(SkinLiftOnGpu, ShadersLiftAsTheCpuDoes) {
   EXPECT_LE(compared.other, 3);  // roots on the border of two clumps, where the last bit decides
   EXPECT_GT(compared.moved, 500);
   EXPECT_LT(compared.moved, 1990);
+}
+
+TEST_F(SkinLiftOnGpu, ShadersLeaveEllipsoidsThatPushRoundAsTheCpuDoes) {
+  const synthetic::Hair hair = synthetic::makeHair();
+  render::HairInput input = synthetic::hairInput(hair, 2000);
+  const std::vector<SkinEllipsoid> skin = ellipsoidsThatPushRound({0.06f, synthetic::kHeadHeight - 0.12f, -0.05f});
+  input.skin = skin;
+  Compared compared;
+  compareLifts(input, compared);
+  EXPECT_LE(compared.other, 3);
+  EXPECT_GT(compared.moved, 500);
 }
 
 TEST_F(SkinLiftOnGpu, ShadersLiftOutOfGridsAsTheCpuDoes) {

@@ -117,7 +117,7 @@ void Inspector::strands() {
     add("hidden", countOf(hints.hidden, "object") + " of curves that the file does not show are left out", "", false);
     result.findings.back().fault = false;
   }
-  if (all < kMinRoots) add("strands", countOf(all, "strand") + ", and a hair mesh takes 20 or more", "", false);
+  if (all < kMinRoots) add("strands", countText(all, kMinRoots, "are there, of which a hair mesh is made"), "", false);
   result.mends.drop_bad = ends.non_finite + ends.zero_length + ends.too_short > 0;
   std::size_t many = 0;
   for (std::size_t s = 0; s < all; ++s) many += groom.pointCount(s) > kManyPoints;
@@ -130,7 +130,7 @@ void Inspector::astray() {
   for (std::size_t n = 0; n < std::min(kNumbersTold, ends.astray.size()); ++n)
     numbers += (n == 0 ? ": number " : ", ") + std::to_string(ends.astray[n]);
   if (ends.astray.size() > kNumbersTold) numbers += ", ...";
-  add("astray", countText(ends.astray.size(), groom.strandCount(), "lie apart from all others, or leap") + numbers,
+  add("astray", countText(ends.astray.size(), groom.strandCount(), "lie apart, or have a point that does") + numbers,
       "--drop-astray", true);
   result.mends.drop_astray = true;
 }

@@ -27,9 +27,9 @@ struct StrandEnds {
   std::vector<std::size_t> astray;                             // of all strands that are none of these
 };
 // At most `most` strands are looked at, evenly spread; the counts are of all. `one_head`: a strand is astray whose
-// points all lie apart from the groom, or of which one leaps from the next by more than three quarters of the groom;
-// the groom is a box about all ends but the outermost 2 % of either side, grown by half of its largest side. Of several
-// heads none is.
+// points all lie outside of a box, or of which two in a row lie farther apart than three quarters of its largest side.
+// The box holds all ends but the outermost 2 % of either side, and is grown by half of its largest side. Of several
+// heads none is astray.
 StrandEnds strandEnds(const Groom& groom, std::size_t most, bool one_head = true);
 
 enum class StrandFault { kNone, kTooFewPoints, kNonFinite, kZeroLength };

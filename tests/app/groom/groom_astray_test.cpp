@@ -19,7 +19,7 @@ TEST(GroomAstray, NamesStrandsThatLieApartAndJudgesByTheOthers) {
     const app::GroomInspection inspection = app::inspectGroom(groom, {}, &model);
     ASSERT_TRUE(inspection.find("astray")) << away;
     EXPECT_EQ(test::lacking(inspection.find("astray")->text,
-                            "1 of 300 strands lie apart from all others, or leap: number 10"),
+                            "1 of 300 strands lie apart, or have a point that does: number 10"),
               "");
     EXPECT_EQ(inspection.findings.size(), 1u) << inspection.findings.front().what;
     app::mendGroom(inspection.mends, &model, groom);
