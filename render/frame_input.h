@@ -157,7 +157,7 @@ struct CameraInput {
 struct LightInput {
   Float3 to_light{0.45f, 0.8f, 0.6f};  // key light's direction, towards the light
   Float3 key{3.5f, 3.3f, 3.0f}, fill{0.28f, 0.32f, 0.40f}, rim{0.82f, 0.78f, 0.74f};
-  Float3 to_fill{-0.8f, 0.3f, 0.6f}, to_rim{-0.6f, 0.3f, -0.85f};
+  Float3 to_fill{-0.55f, 0.25f, 0.8f}, to_rim{-0.6f, 0.3f, -0.85f};
   Float3 ambient_sky{0.22f, 0.24f, 0.28f}, ambient_ground{0.11f, 0.10f, 0.09f};
   int shadow_size = 1024;        // most texels a side of a hair's deep opacity map; the bodies': twice that, to 1024
   int shadow_strands = 8000;     // at most this many strands a hair cast shadow, standing for all; 0: all

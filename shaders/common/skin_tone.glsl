@@ -38,6 +38,6 @@ vec4 skinTone(vec3 rest, vec3 q, float pixel) {
   flush += 0.80 * spot(m, vec3(0.330, 0.470, -0.040), vec3(0.040, 0.150, 0.110));  // ears
   flush += 0.25 * spot(m, vec3(0.0, 0.085, 0.340), vec3(0.080, 0.060, 0.080));   // chin
   vec4 tone = vec4(mix(vec3(1.0), kBlood, flush), 1.0);
-  float relief = (toneNoise(rest * 1100.0) - 0.5) * (1.0 - smoothstep(0.0004, 0.0011, pixel));
-  return tone * (1.0 + relief * vec4(vec3(0.07), 0.25));
+  float relief = (toneNoise(rest * 1100.0) - 0.5) * (1.0 - smoothstep(0.0003, 0.0009, pixel));
+  return tone * (1.0 + relief * vec4(vec3(0.07), 0.12));
 }
