@@ -14,12 +14,13 @@ namespace app {
 namespace {
 
 constexpr std::size_t kMaxSamples = 3000;
-constexpr int kMoments = 24;                       // of all clips together, beside the rest pose
-constexpr float kFarGap = 0.05f;                   // m: all larger gaps are kept as this
-const double kCovered = render::shared::kSkinGap;  // m: skin that sticks out less counts as covered
+constexpr int kMoments = 24;                      // of all clips together, beside the rest pose
+constexpr float kFarGap = 0.05f;                  // m: all larger gaps are kept as this
+const float kCovered = render::shared::kSkinGap;  // m: skin that sticks out less counts as covered
+constexpr float kAllowed = 0.003f;                // m, likewise once there are many
 constexpr double kPatch = 0.40;   // head heights: radius of the patch that an added ellipsoid begins with
 constexpr double kSmaller = 0.6;  // of that, for a patch whose ellipsoid swallows too much
-constexpr int kTries = 3;
+constexpr int kTries = 3, kMoreTries = 6;
 constexpr double kHold = 0.02;           // m, see fitCover
 constexpr double kAround = 0.04;         // m: skin of another part so near may hide a place
 constexpr double kHidden = 0.003;        // m under that
@@ -36,7 +37,7 @@ using Gaps = std::vector<float>;
 class Cover {
  public:
   explicit Cover(Character& character);
-  CoverReport run(int most);
+  CoverReport run(int enough);
   std::vector<unsigned char> unfit() const;  // per joint that is not set apart
 
  private:
@@ -55,7 +56,12 @@ class Cover {
   bool refit(std::size_t e);
   void refitAdded(std::size_t given);
   std::optional<BodyEllipsoid> patchAt(std::size_t place, double radius) const;
-  bool add(std::size_t place);
+  bool add(std::size_t place, int tries);
+  struct Pass {
+    float least;  // m that skin may stick out
+    int most, tries;
+  };
+  void coverAll(std::size_t given, const Pass& pass);
   double over() const;
   bool wanted(std::size_t place) const {
     const SkinSample& sample = skin_.sampleOf(place);
@@ -250,10 +256,10 @@ std::optional<BodyEllipsoid> Cover::patchAt(std::size_t place, double radius) co
 }
 
 // An ellipsoid for the patch of skin around a place that sticks out. Returns whether less sticks out with it.
-bool Cover::add(std::size_t place) {
+bool Cover::add(std::size_t place, int tries) {
   const float before = nearest_gap_[place];
   double radius = kPatch * character_.scalp.head_height;
-  for (int attempt = 0; attempt < kTries; ++attempt, radius *= kSmaller) {
+  for (int attempt = 0; attempt < tries; ++attempt, radius *= kSmaller) {
     const std::optional<BodyEllipsoid> e = patchAt(place, radius);
     if (!e) continue;
     character_.ellipsoids.push_back(*e);
@@ -295,18 +301,24 @@ double Cover::over() const {
   return over / std::max(weight, 1e-12);
 }
 
-CoverReport Cover::run(int most) {
+// Until no skin that is asked for sticks out by more than `least`, or there are `most` beside the given ones.
+void Cover::coverAll(std::size_t given, const Pass& pass) {
+  given_up_.assign(given_up_.size(), 0);
+  const std::size_t most = given + static_cast<std::size_t>(pass.most);
+  for (auto place = worst(pass.least); place && gaps_.size() < most; place = worst(pass.least)) {
+    if (!add(*place, pass.tries)) given_up_[*place % skin_.samples.size()] = 1;
+    refitAdded(given);
+  }
+}
+
+CoverReport Cover::run(int enough) {
   CoverReport report;
   if (skin_.samples.empty()) return report;
   report.over_before = over();
   if (const auto place = worst(0)) report.before = nearest_gap_[*place];
   const std::size_t given = gaps_.size();
-  while (true) {
-    refitAdded(given);
-    const auto place = worst(kCovered);
-    if (!place || gaps_.size() >= given + static_cast<std::size_t>(most)) break;
-    if (!add(*place)) given_up_[*place % skin_.samples.size()] = 1;
-  }
+  coverAll(given, {kCovered, enough, kTries});
+  coverAll(given, {kAllowed, 2 * enough, kMoreTries});
   given_up_.assign(given_up_.size(), 0);
   if (const auto place = worst(0)) {
     report.after = nearest_gap_[*place];
@@ -336,13 +348,13 @@ std::vector<unsigned char> Cover::unfit() const {
 
 }  // namespace
 
-CoverReport coverSkin(Character& character, int most) {
+CoverReport coverSkin(Character& character, int enough) {
   if (character.ellipsoids.empty() || character.mesh.positions.empty()) return {};
   std::vector<BodyEllipsoid> given = character.ellipsoids;
   std::string names;
   for (int round = 0;; ++round) {
     Cover cover(character);
-    CoverReport report = cover.run(most);
+    CoverReport report = cover.run(enough);
     const std::vector<unsigned char> unfit = cover.unfit();
     report.unfit = names;
     if (round == kRounds || std::ranges::find(unfit, 1) == unfit.end()) return report;
@@ -351,7 +363,8 @@ CoverReport coverSkin(Character& character, int most) {
       if (!unfit[joint] || e.by_distances) continue;
       e.by_distances = true;
       const std::string& name = character.skeleton.joints[joint].name;
-      if ((", " + names + ", ").find(", " + name + ", ") == std::string::npos) names += (names.empty() ? "" : ", ") + name;
+      if ((", " + names + ", ").find(", " + name + ", ") == std::string::npos)
+        names += (names.empty() ? "" : ", ") + name;
     }
     character.ellipsoids = given;
   }

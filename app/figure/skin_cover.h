@@ -16,10 +16,11 @@ struct CoverReport {
 };
 
 // Adds ellipsoids until no skin below the chin that hair can reach sticks out of all of them by more than about 2 mm,
-// at rest and at moments of every clip, or `most` have been added. Each stands for one patch of skin. One that swallows
-// skin above the chin, for hair is rooted there and lies there, or air in front of any skin, where hair may hang, is
-// made smaller or left out. What is there already stays, and is marked (BodyEllipsoid::by_distances) where the skin of
-// its joint, the head's included, still sticks out by far: boxes. Deterministic.
-CoverReport coverSkin(Character& character, int most = 40);
+// at rest and at moments of every clip, or `enough` have been added; then smaller ones too, until none sticks out by
+// more than 3 mm, or there are twice as many. Each stands for one patch of skin. One that swallows skin above the chin,
+// for hair is rooted there and lies there, or air in front of any skin, where hair may hang, is made smaller or left
+// out. What is there already stays, and is marked (BodyEllipsoid::by_distances) where the skin of its joint, the head's
+// included, still sticks out by far: boxes. Deterministic.
+CoverReport coverSkin(Character& character, int enough = 40);
 
 }  // namespace app

@@ -106,6 +106,21 @@ TEST(SkinCover, AddsEllipsoidsWhereSkinSticksOut) {
   EXPECT_LT(sticksOut(c, 0), 0.003);
 }
 
+// Where there are enough it goes on, to twice as many at most, while more than 3 mm stick out.
+TEST(SkinCover, GoesOnWhileSkinSticksOut) {
+  int beyond = 0, sufficed = 0;
+  for (int enough = 1; enough <= 6; ++enough) {
+    app::Character c = humpedFigure();
+    const app::CoverReport report = app::coverSkin(c, enough);
+    EXPECT_LE(report.added, 2 * enough);
+    if (report.added < 2 * enough) EXPECT_LE(report.after, 0.003) << enough;
+    beyond += report.added > enough;
+    sufficed += report.added <= enough;
+  }
+  EXPECT_GT(beyond, 0);
+  EXPECT_GT(sufficed, 0);
+}
+
 TEST(SkinCover, LeavesTheAirAndTheHeadFree) {
   app::Character c = humpedFigure();
   const app::Character plain = c;
