@@ -89,9 +89,15 @@ std::vector<TieSpec> readTies(const JsonPlace& place) {
     if (!named) place.refuse("is '" + name.substr(0, 40) + "'", sim::nameHint(name, kTieNames));
     return *named;
   }
+  if (place.value().is_object()) return {readTie(place)};
   std::vector<TieSpec> ties;
   const std::size_t count = place.arraySize(kMaxTies);
-  for (std::size_t i = 0; i < count; ++i) ties.push_back(readTie(place.at(i)));
+  for (std::size_t i = 0; i < count; ++i) {
+    const JsonPlace one = place.at(i);
+    const std::vector<TieSpec> more = one.value().is_string() ? readTies(one) : std::vector{readTie(one)};
+    ties.insert(ties.end(), more.begin(), more.end());
+  }
+  if (ties.size() > kMaxTies) place.refuse("has " + std::to_string(ties.size()) + " ties", "leave some out");
   return ties;
 }
 
@@ -116,7 +122,7 @@ std::vector<TieSpec> tiesFromText(std::string_view text) {
                          (sim::nearestName(text, kTieNames).empty() ? "; or write JSON as in a scene's \"ties\"" : ""));
   const json parsed = parseJson(text, "");
   const JsonPlace place(parsed, "");
-  return parsed.is_object() ? std::vector{readTie(place)} : readTies(place);
+  return readTies(place);
 }
 
 std::string tieTitle(const std::vector<TieSpec>& ties) {

@@ -2,7 +2,7 @@
 //
 //   "ties": [{ "at": "back", "high", "low", "left", "right" or [x, y, z], "radius": 0.02, "side": "all", "left" or
 //              "right", "above": -1, "braided": false, "bun": false }]
-//   "ties": "buns"                        a name as --tie takes it
+//   "ties": "buns"                        a name as --tie takes it, one tie alone, or names in the list
 // Numbers are metres in the scalp's frame (x to the figure's left, y up, z forward); "above" counts from the head's
 // middle, and hair that is rooted lower stays out. Every key may be left out. A bundle goes to the first tie that takes
 // it. The hair in the ring is pinned to the head. What hangs from a braided tie is drawn as a plait of three strands,

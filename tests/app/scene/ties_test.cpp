@@ -373,6 +373,10 @@ TEST(Ties, ASceneKeepsThem) {
   const app::Scene back = app::readScene(app::writeScene(scene), "scene.json");
   EXPECT_EQ(app::writeTies(back.characters[0].ties), app::writeTies(scene.characters[0].ties));
   EXPECT_THROW(app::tiesFromText("{\"radius\": 9}"), app::InputError);
+  EXPECT_THROW(app::tiesFromText(R"([["left"]])"), app::InputError);
+  const auto mixed = app::tiesFromText(R"(["two", {"at": "high"}])");
+  ASSERT_EQ(mixed.size(), 3u);
+  EXPECT_EQ(mixed[0].place + mixed[1].place + mixed[2].place, "leftrighthigh");
 }
 
 }  // namespace ties_test
