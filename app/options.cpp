@@ -333,7 +333,10 @@ void finishExport(const Unchecked& unchecked, Options& options) {
     throw UsageError("--export-frames cannot be '" + unchecked.export_frames +
                      "'; write FIRST-LAST, for instance 0-119");
   if (spec.what != ExportWhat::kStrands && spec.points > 0)
-    throw UsageError("--export-points goes with strands; guides and the mesh have a point a layer");
+    throw UsageError(
+        std::string("--export-points goes with strands; ") +
+        (mesh ? "a .glb file has the hair mesh or cards: leave it out, or name the file .abc, .usda, .hair or .ply"
+              : "guides have a point a layer: leave it out"));
   if (spec.file.ends_with(".tfx") && spec.points > 0 && !isTfxPoints(static_cast<std::size_t>(spec.points)))
     throw UsageError("--export-points cannot be " + std::to_string(spec.points) +
                      " for a .tfx file; give 4, 8, 16, 32 or 64");

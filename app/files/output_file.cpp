@@ -12,11 +12,7 @@ namespace app {
 
 namespace fs = std::filesystem;
 
-namespace {
-
-// The file that a link leads to, whether or not it is there yet. A link stays itself where it leads round, or to what
-// has no path: /dev/stdout to a pipe.
-std::string followed(const std::string& file) {
+std::string fileBehindLinks(const std::string& file) {
   constexpr int kMostLinks = 40;  // as the system follows
   std::error_code ignored;
   fs::path path = file;
@@ -26,9 +22,7 @@ std::string followed(const std::string& file) {
   return fs::is_symlink(path, ignored) || fs::exists(path, ignored) != there ? file : path.string();
 }
 
-}  // namespace
-
-OutputFile::OutputFile(const std::string& file) : file_(file), target_(followed(file)) {
+OutputFile::OutputFile(const std::string& file) : file_(file), target_(fileBehindLinks(file)) {
   std::error_code ignored;
   if (fs::is_directory(target_, ignored)) fail(EISDIR);
   const bool direct = fs::exists(target_, ignored) && !fs::is_regular_file(target_, ignored);

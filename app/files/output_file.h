@@ -56,6 +56,10 @@ void writeFile(const std::string& file, std::string_view bytes);
 // the program.
 void failAtFileLimit();
 
+// The file that a link leads to, whether or not it is there yet. A link stays itself where it leads round, or to what
+// has no path: /dev/stdout to a pipe.
+std::string fileBehindLinks(const std::string& file);
+
 // Throws OutputError when the file cannot be written, before a long run finds that out at its end. What is there stays.
 void checkWritable(const std::string& file);
 

@@ -25,9 +25,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
+// Beside the film, and with the ending that it was named by: ffmpeg takes the format from that.
 std::string unfinishedName(const std::string& file) {
   const fs::path path(file);
-  return (path.parent_path() /
+  return (fs::path(fileBehindLinks(file)).parent_path() /
           ("." + path.stem().string() + "-" + std::to_string(getpid()) + path.extension().string()))
       .string();
 }
@@ -150,7 +151,7 @@ std::string VideoWriter::faultWords() const {
 
 void VideoWriter::finish() {
   std::error_code error;
-  if (close() != 0 || !faultWords().empty() || (fs::rename(unfinished_, file_, error), error))
+  if (close() != 0 || !faultWords().empty() || (fs::rename(unfinished_, fileBehindLinks(file_), error), error))
     refuse("could not be finished by ffmpeg");
 }
 

@@ -52,6 +52,18 @@ TEST(Video, AFilmIsWholeOrNotThere) {
       app::OutputError);
 }
 
+TEST(Video, ALinkLeadsToTheFilm) {
+  if (!app::canWriteVideo()) GTEST_SKIP() << "ffmpeg is not installed";
+  const std::string folder = test::freshFolder("video_link");
+  std::filesystem::create_directory(folder + "/films");
+  std::filesystem::create_symlink("films/kept", folder + "/film.mp4");
+  app::VideoWriter film(folder + "/film.mp4", 32, 22, 30);
+  for (int frame = 0; frame < 3; ++frame) film.add(std::vector<unsigned char>(4 * 32 * 22, 128));
+  film.finish();
+  EXPECT_TRUE(std::filesystem::is_symlink(folder + "/film.mp4"));
+  EXPECT_EQ(test::readAll(folder + "/films/kept").substr(4, 4), "ftyp");
+}
+
 // ffmpeg holds a short film back until its end: only then does the disk turn out to be full.
 TEST(Video, AFilmThatTheDiskCannotHoldEndsInAFault) {
   if (!app::canWriteVideo()) GTEST_SKIP() << "ffmpeg is not installed";
