@@ -329,7 +329,8 @@ long HairStore::uploadVertices(HairResources& hair, std::span<const float> posit
     hair.head = fitHead(layout, positions);
   } else {
     sky_visibility_.compute(layout, positions, representedWidth(hair.look), hair.look.length_variation,
-                            directionOr(to_fill_, Vector3f::UnitX()), directionOr(to_rim_, -Vector3f::UnitZ()));
+                            directionOr(to_fill_, Vector3f::UnitX()), directionOr(to_rim_, -Vector3f::UnitZ()),
+                            hair.skin);
     hair.soft_light.assign(sky_visibility_.values().begin(), sky_visibility_.values().end());
     hair.soft_light_age = 0;
     hair.head = sky_visibility_.head();

@@ -17,6 +17,9 @@ using Eigen::Vector3f;
 // Held to traced light; see docs/picture.md.
 constexpr float kClumpGaps = 0.4f;
 constexpr float kHeadDepth = 6.0f;  // optical depth of a ray through the head's middle; softened at its rim
+// Likewise of the body's ellipsoids, whose shadow ends well inside of them: a hair mesh has too few vertices for its
+// edge, and hair that lies on skin is lit. Thin ones are left out: 1/m, the norm of a ball's map.
+constexpr float kBodyRim = 0.9f, kBodySoft = 0.3f, kThinnestBlocker = 60;
 // Hair that is drawn together fills a cell with many depths, and the lattice blurs its surface into them: what the eye
 // sees would count as buried. Of what a cell holds beyond loose hair's kLooseDepth, kBlurredCells lie behind it. Both
 // held to traced light; see docs/picture.md.
@@ -63,6 +66,31 @@ float headDepth(const Vector3f& gap, float radius, const Vector3f& direction) {
   if (ahead <= 0) return 0;
   const float miss = std::sqrt(std::max(gap.squaredNorm() - ahead * ahead, 0.0f)) / radius;
   return kHeadDepth * std::clamp((1.05f - miss) / 0.35f, 0.0f, 1.0f);
+}
+
+// Adds to the depths of all vertices what the body puts before the light.
+void addBody(std::span<const float> positions, const Vector3f& to_light, std::span<const SkinEllipsoid> skin,
+             std::vector<float>& depths) {
+  const auto count = static_cast<Eigen::Index>(depths.size());
+  const auto axis = [&](int a) {
+    return Eigen::Map<const Eigen::ArrayXf, 0, Eigen::InnerStride<3>>(positions.data() + a, count);
+  };
+  const Eigen::ArrayXf x = axis(0), y = axis(1), z = axis(2);
+  // By which a ray misses an ellipsoid's middle, in radii, squared.
+  Eigen::ArrayXf least = Eigen::ArrayXf::Constant(count, kBodyRim * kBodyRim), before(count), squared(count);
+  for (const SkinEllipsoid& ellipsoid : skin) {
+    Eigen::Matrix<float, 3, 4> to_ball;
+    for (int a = 0; a < 3; ++a)
+      to_ball.row(a) = Eigen::Map<const Eigen::RowVector4f>(ellipsoid.to_ball[static_cast<std::size_t>(a)].data());
+    if (to_ball.leftCols<3>().norm() > kThinnestBlocker) continue;
+    const Vector3f towards = (to_ball.leftCols<3>() * to_light).normalized();
+    const auto along = [&](const Eigen::RowVector4f& row) { return row[0] * x + row[1] * y + row[2] * z + row[3]; };
+    before = along(-towards.transpose() * to_ball);
+    squared = along(to_ball.row(0)).square() + along(to_ball.row(1)).square() + along(to_ball.row(2)).square();
+    least = (before > 0).select(least.min(squared - before.square()), least);
+  }
+  const Eigen::ArrayXf inside = (kBodyRim - least.max(0.0f).sqrt()) / kBodySoft;
+  Eigen::Map<Eigen::ArrayXf>(depths.data(), count) += kHeadDepth * inside.min(1.0f);
 }
 
 }  // namespace
@@ -218,7 +246,8 @@ float SkyVisibility::depthBehind(const Vector3f& from, const Vector3f& to_light)
 }
 
 void SkyVisibility::compute(const HairLayout& layout, std::span<const float> positions, float hair_width,
-                            float length_variation, const Vector3f& to_fill, const Vector3f& to_rim) {
+                            float length_variation, const Vector3f& to_fill, const Vector3f& to_rim,
+                            std::span<const SkinEllipsoid> skin) {
   head_ = fitHead(layout, positions);
   placeVertices(layout, positions);
   fillGrid(layout, hair_width, length_variation);
@@ -235,6 +264,7 @@ void SkyVisibility::compute(const HairLayout& layout, std::span<const float> pos
   const auto light = [&](const Vector3f& to_light, LightDepths SoftLight::*depths) {
     const Vector3f direction = to_head(to_light);
     lookTowards(direction);
+    addBody(positions, to_light, skin, depths_);
     for (std::size_t v = 0; v < vertices_.size(); ++v)
       values_[v].*depths = {depths_[v], depthBehind(vertices_[v], direction)};
   };

@@ -6,13 +6,11 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <numbers>
 
 #include "render/hair/hair_store.h"
-#include "render/light/density_grid.h"
 #include "render/light/fiber_scattering.h"
-#include "render/light/sky_visibility.h"
 #include "render/strands/hair_layout.h"
+#include "render/view_math.h"
 #include "shaders/shared.h"
 #include "tests/gl_fixture.h"
 #include "tests/strand_capture.h"
@@ -323,120 +321,6 @@ TEST(FiberScattering, PickedColoursAbsorbWhatTheyLack) {
   EXPECT_LT(sigma[1], sigma[2]);
   look.color = {0, 0, 0};
   for (float s : render::absorptionOf(look)) EXPECT_TRUE(std::isfinite(s));
-}
-
-TEST(SkyVisibility, FindsTheHeadAndDarkensWhatLiesDeep) {
-  const synthetic::Hair hair = synthetic::makeHair();
-  const render::HairLayout layout = render::makeHairLayout(hair.faces, hair.positions);
-  const render::HeadBall head = render::fitHead(layout, hair.positions);
-  EXPECT_NEAR(head.radius, synthetic::kHeadRadius, 1e-4f);
-  EXPECT_LT((head.center - Vector3f(0, synthetic::kHeadHeight, 0)).norm(), 1e-4f);
-  render::SkyVisibility sky_visibility;
-  sky_visibility.compute(layout, hair.positions, 5.0f, 0.0f, Vector3f::UnitX(), -Vector3f::UnitZ());
-  // The crown's column is outermost, the last ring's roots are covered by all that falls over them.
-  const render::SoftLight outer = sky_visibility.values()[4],
-                          inner = sky_visibility.values()[(hair.positions.size() / 3) - hair.layers];
-  EXPECT_GT(outer.sky, inner.sky);
-  for (const render::SoftLight& value : sky_visibility.values()) {
-    ASSERT_TRUE(std::isfinite(value.sky));
-    ASSERT_GE(value.sky, 0.0f);
-    ASSERT_LE(value.sky, 1.0001f);
-    for (const render::LightDepths& depths : {value.fill, value.rim}) {
-      ASSERT_GE(depths.front, 0.0f);
-      ASSERT_GE(depths.behind, 0.0f);
-    }
-  }
-}
-
-// Hair drawn into a tail: its surface is lit from its own side, though a cell of the lattice holds many depths of it,
-// and what lies on the far side is dark.
-TEST(SkyVisibility, TheSurfaceOfATailIsLit) {
-  constexpr float kTail = 0.018f;  // m, radius
-  synthetic::Hair hair = synthetic::makeHair();
-  const render::HairLayout rest = render::makeHairLayout(hair.faces, hair.positions);
-  for (const render::HairColumn& column : rest.columns) {
-    const Vector3f across = kTail / synthetic::kHeadRadius * (column.rest - Vector3f(0, synthetic::kHeadHeight, 0));
-    for (int layer = 1; layer < hair.layers; ++layer) {
-      const Vector3f at(across.x(), synthetic::kHeadHeight - 0.03f * static_cast<float>(layer), across.z() - 0.15f);
-      std::copy_n(at.data(), 3, hair.positions.begin() + 3 * (column.first_vertex + layer));
-    }
-  }
-  const render::HairLayout layout = render::makeHairLayout(hair.faces, hair.positions);
-  render::SkyVisibility light;
-  light.compute(layout, hair.positions, 7.0f, 0.0f, Vector3f::UnitX(), -Vector3f::UnitX());
-  int seen = 0;
-  for (const render::HairColumn& column : layout.columns) {
-    const int vertex = column.first_vertex + hair.layers / 2;
-    const float side = hair.positions[3 * static_cast<std::size_t>(vertex)] / kTail;
-    if (std::abs(side) < 0.8f) continue;
-    const render::SoftLight& value = light.values()[static_cast<std::size_t>(vertex)];
-    EXPECT_LT((side > 0 ? value.fill : value.rim).front, 2.0f);
-    EXPECT_GT((side > 0 ? value.rim : value.fill).front, 6.0f);
-    ++seen;
-  }
-  EXPECT_GT(seen, 3);
-}
-
-// What comes through to a place from a direction, as bodies read it; 1 outside of the texture.
-float openTo(const render::SkyVisibility& light, const Eigen::Isometry3f& head, const Vector3f& at,
-             const Vector3f& direction) {
-  const render::HairOpenness& openness = light.openness();
-  const Eigen::Vector4f place = openness.from_head * (head.inverse() * at).homogeneous();
-  std::array<int, 3> texel{};
-  for (int a = 0; a < 3; ++a) {
-    texel[a] = static_cast<int>(std::floor(place[a] * static_cast<float>(openness.size[a])));
-    if (texel[a] < 0 || texel[a] >= openness.size[a]) return 1;
-  }
-  const auto& t = openness.texels[(texel[2] * openness.size[1] + texel[1]) * openness.size[0] + texel[0]];
-  const Vector3f slope = (Vector3f(t[1], t[2], t[3]) - Vector3f::Constant(128)) / 127;
-  return t[0] / 255.0f + slope.dot(direction);
-}
-
-// Behind the head under a layer of hair little comes from behind; outside of it all does, and the hair stands in the
-// way from within. In front, where none grows, the face is open, though hair is behind it.
-TEST(SkyVisibility, SurfacesUnderHairAreClosedToItsSideAlone) {
-  const synthetic::Hair hair = synthetic::makeHair();
-  const render::HairLayout layout = render::makeHairLayout(hair.faces, hair.positions);
-  render::SkyVisibility light;
-  light.compute(layout, hair.positions, 12.0f, 0.0f, Vector3f::UnitX(), -Vector3f::UnitZ());
-  const Eigen::Isometry3f head = render::headFrame(layout, hair.positions);
-  const Vector3f middle(0, synthetic::kHeadHeight, 0), back = -Vector3f::UnitZ(), front = Vector3f::UnitZ();
-  const float radius = synthetic::kHeadRadius;
-  const Vector3f under = middle + radius * back - Vector3f(0, 0.04f, 0), outside = under + 0.07f * back,
-                 face = middle + 0.8f * radius * front - Vector3f(0, 0.03f, 0);
-  EXPECT_LT(openTo(light, head, under, back), 0.4f);
-  EXPECT_GT(openTo(light, head, outside, back), 0.9f);
-  EXPECT_GT(openTo(light, head, face, front), 0.7f);
-  EXPECT_LT(openTo(light, head, face, back), openTo(light, head, face, front) - 0.3f);
-  EXPECT_EQ(openTo(light, head, middle + Vector3f(0, -2, 0), back), 1);
-}
-
-// Trilinear shares: what is added at a point keeps its sum and its centre.
-TEST(DensityGrid, SpreadsAnExtinctionAboutItsPlace) {
-  render::Bounds bounds;
-  bounds.add(Vector3f(-0.05f, -0.04f, -0.03f));
-  bounds.add(Vector3f(0.05f, 0.06f, 0.04f));
-  for (const Vector3f& place : {Vector3f(0.013f, -0.021f, 0.008f), Vector3f(-0.0412f, 0.0301f, -0.0219f)}) {
-    render::DensityGrid grid;
-    grid.place(bounds);
-    grid.add(place, 2);
-    // Sampled linearly between nodes, a lattice of any finer spacing sums to the same.
-    constexpr float kSpacing = 0.001f;
-    double sum = 0;
-    Eigen::Vector3d moment = Eigen::Vector3d::Zero();
-    for (int i = -30; i <= 30; ++i) {
-      for (int j = -30; j <= 30; ++j) {
-        for (int k = -30; k <= 30; ++k) {
-          const Vector3f at = place + kSpacing * Vector3f(i, j, k);
-          const double value = grid.density(at) * kSpacing * kSpacing * kSpacing;
-          sum += value;
-          moment += value * at.cast<double>();
-        }
-      }
-    }
-    EXPECT_NEAR(sum, 2, 0.02);
-    EXPECT_LT((moment / sum - place.cast<double>()).norm(), 2e-4) << "m";
-  }
 }
 
 // A box beside the view is seen once it is swept across it, and not when it is swept away.
