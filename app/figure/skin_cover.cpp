@@ -37,8 +37,9 @@ using Gaps = std::vector<float>;
 class Cover {
  public:
   explicit Cover(Character& character);
-  CoverReport run(int enough);
-  std::vector<unsigned char> unfit() const;  // per joint that is not set apart
+  void begin(int enough);
+  std::vector<unsigned char> unfit() const;  // then, per joint that is not set apart
+  CoverReport finish(int enough);
 
  private:
   Gaps gapsOf(const BodyEllipsoid& e) const { return gapsAt(e, skin_.world.size()); }
@@ -54,14 +55,14 @@ class Cover {
                                     const std::vector<int>& own) const;
   bool swallows(const BodyEllipsoid& e, const Gaps& gaps) const;
   bool refit(std::size_t e);
-  void refitAdded(std::size_t given);
+  void refitAdded();
   std::optional<BodyEllipsoid> patchAt(std::size_t place, double radius) const;
   bool add(std::size_t place, int tries);
   struct Pass {
     float least;  // m that skin may stick out
     int most, tries;
   };
-  void coverAll(std::size_t given, const Pass& pass);
+  void coverAll(const Pass& pass);
   double over() const;
   bool wanted(std::size_t place) const {
     const SkinSample& sample = skin_.sampleOf(place);
@@ -72,6 +73,8 @@ class Cover {
 
   Character& character_;
   PosedSkin skin_;
+  CoverReport report_;
+  std::size_t given_ = 0;                      // ellipsoids that were there
   std::vector<Gaps> gaps_;                     // per ellipsoid
   std::vector<float> nearest_gap_, head_gap_;  // per place; at rest, to the given ones, per sample
   std::vector<int> nearest_;                   // the ellipsoid, per place
@@ -83,6 +86,7 @@ class Cover {
 
 Cover::Cover(Character& character) : character_(character), skin_(poseSkin(character, kMaxSamples, kMoments)) {
   for (const BodyEllipsoid& e : character_.ellipsoids) gaps_.push_back(gapsOf(e));
+  given_ = gaps_.size();
   set_apart_.resize(character_.skeleton.joints.size(), 0);
   for (const BodyEllipsoid& e : character_.ellipsoids)
     if (e.by_distances) set_apart_[static_cast<std::size_t>(e.joint)] = 1;
@@ -274,20 +278,20 @@ bool Cover::add(std::size_t place, int tries) {
   return false;
 }
 
-// Those from number `given` on that skin sticks out of.
-void Cover::refitAdded(std::size_t given) {
+// Of those beside the given ones, those that skin sticks out of.
+void Cover::refitAdded() {
   std::vector<unsigned char> due(gaps_.size(), 0);
   for (std::size_t i = 0; i < nearest_.size(); ++i) {
     if (nearest_gap_[i] > kCovered && wanted(i)) due[static_cast<std::size_t>(nearest_[i])] = 1;
   }
   bool any = false;
-  for (std::size_t e = given; e < due.size(); ++e) {
+  for (std::size_t e = given_; e < due.size(); ++e) {
     if (due[e]) any = refit(e) || any;
   }
   if (!any) return;
   nearest_gap_ = given_gap_;
   nearest_ = given_nearest_;
-  findNearest(given);
+  findNearest(given_);
 }
 
 // m, of the rest pose's samples: the mean of how far they lie inside.
@@ -302,31 +306,33 @@ double Cover::over() const {
 }
 
 // Until no skin that is asked for sticks out by more than `least`, or there are `most` beside the given ones.
-void Cover::coverAll(std::size_t given, const Pass& pass) {
+void Cover::coverAll(const Pass& pass) {
   given_up_.assign(given_up_.size(), 0);
-  const std::size_t most = given + static_cast<std::size_t>(pass.most);
+  const std::size_t most = given_ + static_cast<std::size_t>(pass.most);
   for (auto place = worst(pass.least); place && gaps_.size() < most; place = worst(pass.least)) {
     if (!add(*place, pass.tries)) given_up_[*place % skin_.samples.size()] = 1;
-    refitAdded(given);
+    refitAdded();
   }
 }
 
-CoverReport Cover::run(int enough) {
-  CoverReport report;
-  if (skin_.samples.empty()) return report;
-  report.over_before = over();
-  if (const auto place = worst(0)) report.before = nearest_gap_[*place];
-  const std::size_t given = gaps_.size();
-  coverAll(given, {kCovered, enough, kTries});
-  coverAll(given, {kAllowed, 2 * enough, kMoreTries});
+void Cover::begin(int enough) {
+  if (skin_.samples.empty()) return;
+  report_.over_before = over();
+  if (const auto place = worst(0)) report_.before = nearest_gap_[*place];
+  coverAll({kCovered, enough, kTries});
+}
+
+CoverReport Cover::finish(int enough) {
+  if (skin_.samples.empty()) return report_;
+  coverAll({kAllowed, 2 * enough, kMoreTries});
   given_up_.assign(given_up_.size(), 0);
   if (const auto place = worst(0)) {
-    report.after = nearest_gap_[*place];
-    report.where = character_.skeleton.joints[static_cast<std::size_t>(skin_.sampleOf(*place).joint)].name;
+    report_.after = nearest_gap_[*place];
+    report_.where = character_.skeleton.joints[static_cast<std::size_t>(skin_.sampleOf(*place).joint)].name;
   }
-  report.added = static_cast<int>(gaps_.size() - given);
-  report.over = over();
-  return report;
+  report_.added = static_cast<int>(gaps_.size() - given_);
+  report_.over = over();
+  return report_;
 }
 
 std::vector<unsigned char> Cover::unfit() const {
@@ -354,10 +360,13 @@ CoverReport coverSkin(Character& character, int enough) {
   std::string names;
   for (int round = 0;; ++round) {
     Cover cover(character);
-    CoverReport report = cover.run(enough);
+    cover.begin(enough);
     const std::vector<unsigned char> unfit = cover.unfit();
-    report.unfit = names;
-    if (round == kRounds || std::ranges::find(unfit, 1) == unfit.end()) return report;
+    if (round == kRounds || std::ranges::find(unfit, 1) == unfit.end()) {
+      CoverReport report = cover.finish(enough);
+      report.unfit = names;
+      return report;
+    }
     for (BodyEllipsoid& e : given) {
       const auto joint = static_cast<std::size_t>(e.joint);
       if (!unfit[joint] || e.by_distances) continue;

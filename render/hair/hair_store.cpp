@@ -315,9 +315,9 @@ long HairStore::uploadOpenness(HairResources& hair) {
   return static_cast<long>(4 * openness.texels.size());
 }
 
-long HairStore::uploadVertices(HairResources& hair, std::span<const float> positions, bool renew_light,
-                               const DrawSkips& skips) {
+long HairStore::uploadVertices(HairResources& hair, const HairInput& input, bool renew_light, const DrawSkips& skips) {
   const HairLayout& layout = hair.layout();
+  const std::span<const float> positions = input.positions;
   long uploaded = 0;
   inLayerGradients(layout, positions, gradients_);
   const auto vertices = static_cast<std::size_t>(layout.vertex_count);
@@ -330,7 +330,7 @@ long HairStore::uploadVertices(HairResources& hair, std::span<const float> posit
   } else {
     sky_visibility_.compute(layout, positions, representedWidth(hair.look), hair.look.length_variation,
                             directionOr(to_fill_, Vector3f::UnitX()), directionOr(to_rim_, -Vector3f::UnitZ()),
-                            hair.skin);
+                            input.skin);
     hair.soft_light.assign(sky_visibility_.values().begin(), sky_visibility_.values().end());
     hair.soft_light_age = 0;
     hair.head = sky_visibility_.head();
@@ -409,7 +409,7 @@ long HairStore::refresh(HairResources& hair, const HairInput& input, const DrawS
   const bool renew = fresh_count || fresh_look || light_moved;
   uploaded += uploadSkin(hair, input.positions, skips);
   if (!renew && !fresh_positions) return uploaded + uploadBlock(hair);
-  return uploaded + uploadVertices(hair, input.positions, renew, skips) + uploadBlock(hair);
+  return uploaded + uploadVertices(hair, input, renew, skips) + uploadBlock(hair);
 }
 
 long HairStore::update(std::span<const HairInput> inputs, const LightInput& light, const DrawSkips& skips,

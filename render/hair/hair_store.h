@@ -138,7 +138,7 @@ class HairStore {
   long refresh(HairResources& hair, const HairInput& input, const DrawSkips& skips);
   long uploadOpenness(HairResources& hair);
   long uploadSkin(HairResources& hair, std::span<const float> positions, const DrawSkips& skips);
-  long uploadVertices(HairResources& hair, std::span<const float> positions, bool renew_light, const DrawSkips& skips);
+  long uploadVertices(HairResources& hair, const HairInput& input, bool renew_light, const DrawSkips& skips);
 
   std::vector<HairResources> hairs_;
   std::vector<std::unique_ptr<HairStyle>> styles_;

@@ -18,8 +18,9 @@ using Eigen::Vector3f;
 constexpr float kClumpGaps = 0.4f;
 constexpr float kHeadDepth = 6.0f;  // optical depth of a ray through the head's middle; softened at its rim
 // Likewise of the body's ellipsoids, whose shadow ends well inside of them: a hair mesh has too few vertices for its
-// edge, and hair that lies on skin is lit. Thin ones are left out: 1/m, the norm of a ball's map.
-constexpr float kBodyRim = 0.9f, kBodySoft = 0.3f, kThinnestBlocker = 60;
+// edge, and hair that lies on skin is lit. It narrows with the distance, and ends after kBodyReach (m): the lights are
+// soft. Thin ones are left out: 1/m, the norm of a ball's map.
+constexpr float kBodyRim = 0.9f, kBodySoft = 0.3f, kBodyReach = 0.5f, kThinnestBlocker = 60;
 // Hair that is drawn together fills a cell with many depths, and the lattice blurs its surface into them: what the eye
 // sees would count as buried. Of what a cell holds beyond loose hair's kLooseDepth, kBlurredCells lie behind it. Both
 // held to traced light; see docs/picture.md.
@@ -71,11 +72,15 @@ float headDepth(const Vector3f& gap, float radius, const Vector3f& direction) {
 // Adds to the depths of all vertices what the body puts before the light.
 void addBody(std::span<const float> positions, const Vector3f& to_light, std::span<const SkinEllipsoid> skin,
              std::vector<float>& depths) {
+  if (skin.empty() || depths.empty()) return;
   const auto count = static_cast<Eigen::Index>(depths.size());
   const auto axis = [&](int a) {
     return Eigen::Map<const Eigen::ArrayXf, 0, Eigen::InnerStride<3>>(positions.data() + a, count);
   };
   const Eigen::ArrayXf x = axis(0), y = axis(1), z = axis(2);
+  const Vector3f center(x.mean(), y.mean(), z.mean());
+  const float radius =
+      std::sqrt(((x - center.x()).square() + (y - center.y()).square() + (z - center.z()).square()).maxCoeff());
   // By which a ray misses an ellipsoid's middle, in radii, squared.
   Eigen::ArrayXf least = Eigen::ArrayXf::Constant(count, kBodyRim * kBodyRim), before(count), squared(count);
   for (const SkinEllipsoid& ellipsoid : skin) {
@@ -83,11 +88,15 @@ void addBody(std::span<const float> positions, const Vector3f& to_light, std::sp
     for (int a = 0; a < 3; ++a)
       to_ball.row(a) = Eigen::Map<const Eigen::RowVector4f>(ellipsoid.to_ball[static_cast<std::size_t>(a)].data());
     if (to_ball.leftCols<3>().norm() > kThinnestBlocker) continue;
-    const Vector3f towards = (to_ball.leftCols<3>() * to_light).normalized();
+    const Vector3f way = to_ball.leftCols<3>() * to_light, towards = way.normalized();
     const auto along = [&](const Eigen::RowVector4f& row) { return row[0] * x + row[1] * y + row[2] * z + row[3]; };
-    before = along(-towards.transpose() * to_ball);
+    const Eigen::RowVector4f ahead = -towards.transpose() * to_ball;
+    const float middle = ahead.dot(center.homogeneous()), around = ahead.head<3>().norm() * radius,
+                narrowing = kBodyRim / (kBodyReach * way.norm());  // a radius
+    if (middle + around <= 0 || (middle - around) * narrowing >= kBodyRim) continue;
+    before = along(ahead);
     squared = along(to_ball.row(0)).square() + along(to_ball.row(1)).square() + along(to_ball.row(2)).square();
-    least = (before > 0).select(least.min(squared - before.square()), least);
+    least = (before > 0).select(least.min(squared - (1 - narrowing * narrowing) * before.square()), least);
   }
   const Eigen::ArrayXf inside = (kBodyRim - least.max(0.0f).sqrt()) / kBodySoft;
   Eigen::Map<Eigen::ArrayXf>(depths.data(), count) += kHeadDepth * inside.min(1.0f);

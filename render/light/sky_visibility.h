@@ -44,8 +44,8 @@ struct HairOpenness {
 class SkyVisibility {
  public:
   // hair_width: summed projected diameter of all hairs, m (number of hairs times diameter). length_variation: of the
-  // look: strands end that share of their length early, more or less. to_fill, to_rim: unit. skin: of the body near
-  // the hair, which stands in the way of fill and rim.
+  // look: strands end that share of their length early, more or less. to_fill, to_rim: unit. skin: of the body, which
+  // stands in the way of fill and rim.
   void compute(const HairLayout& layout, std::span<const float> positions, float hair_width, float length_variation,
                const Eigen::Vector3f& to_fill, const Eigen::Vector3f& to_rim, std::span<const SkinEllipsoid> skin = {});
   std::span<const SoftLight> values() const { return values_; }  // one a vertex
