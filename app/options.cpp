@@ -335,7 +335,7 @@ void finishExport(const Unchecked& unchecked, Options& options) {
   if (spec.what != ExportWhat::kStrands && spec.points > 0)
     throw UsageError(
         std::string("--export-points goes with strands; ") +
-        (mesh ? "a .glb file has the hair mesh or cards: leave it out, or name the file .abc, .usda, .hair or .ply"
+        (mesh ? "a .glb file has the hair mesh or cards: leave it out, or name the file .abc, .usda, .hair, .ply or .tfx"
               : "guides have a point a layer: leave it out"));
   if (spec.file.ends_with(".tfx") && spec.points > 0 && !isTfxPoints(static_cast<std::size_t>(spec.points)))
     throw UsageError("--export-points cannot be " + std::to_string(spec.points) +

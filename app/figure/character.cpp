@@ -178,7 +178,7 @@ Character loadCharacter(const std::string& motion_file, const std::string& parts
   static KeptMannequins mannequins;
   if (!told.empty() && kind != Kind::kModel && kind != Kind::kUnknown)
     throw InputError(motion_file, "", "is a motion, and '" + told.substr(0, 80) + "' is told of a body without bones",
-                     "leave out --body");
+                     "leave out --body, or the scene's \"body\"");
   if (kind == Kind::kBvh) return mannequins.get(readText(motion_file), motion_file);
   return makeCharacter(kind, kind == Kind::kMot ? readText(motion_file) : "", motion_file, parts_dir, told);
 }

@@ -438,7 +438,8 @@ Character assemble(Import& import, const std::string& told) {
   if ((head < 0 || endingOf(import.file) == ".obj") && isStill(*import.scene))
     return assembleStill(import, raw, told, materials);
   if (!told.empty())
-    import.fail("", "has bones, and '" + told.substr(0, 80) + "' is told of a body without", "leave out --body");
+    import.fail("", "has bones, and '" + told.substr(0, 80) + "' is told of a body without",
+                "leave out --body, or the scene's \"body\"");
   if (head >= 0) head = import.by_name.at(skeleton.joints[head].name);
   if (head < 0)
     import.fail("skeleton", "no joint of " + std::to_string(skeleton.joints.size()) + " can carry a head",

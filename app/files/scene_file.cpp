@@ -163,8 +163,9 @@ std::optional<Resolution> parseResolution(std::string_view name) {
 namespace {
 
 std::string namedPreset(const JsonPlace& place, const std::string& scene_file) {
+  const std::string name = place.text();
   try {
-    return presetFile(place.text(), scene_file);
+    return presetFile(name, scene_file);
   } catch (const InputError& fault) {
     throw InputError(scene_file, place.pointer(), fault.what(), "");
   }

@@ -90,6 +90,8 @@ std::vector<TieSpec> readTies(const JsonPlace& place) {
     return *named;
   }
   if (place.value().is_object()) return {readTie(place)};
+  if (!place.value().is_array())
+    place.refuse("is neither a name nor a list", "write a name in quotes, or [{ \"at\": ... }]");
   std::vector<TieSpec> ties;
   const std::size_t count = place.arraySize(kMaxTies);
   for (std::size_t i = 0; i < count; ++i) {
@@ -97,7 +99,8 @@ std::vector<TieSpec> readTies(const JsonPlace& place) {
     const std::vector<TieSpec> more = one.value().is_string() ? readTies(one) : std::vector{readTie(one)};
     ties.insert(ties.end(), more.begin(), more.end());
   }
-  if (ties.size() > kMaxTies) place.refuse("has " + std::to_string(ties.size()) + " ties", "leave some out");
+  if (ties.size() > kMaxTies)
+    place.refuse("has " + std::to_string(ties.size()) + " ties", "give at most " + std::to_string(kMaxTies));
   return ties;
 }
 

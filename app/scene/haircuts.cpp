@@ -119,7 +119,8 @@ void applyTies(const CharacterSpec& spec, const LoadedBody& body, sim::HairMeshS
     const std::vector<int>& ring = result.rings[t];
     if (ring.empty())
       throw InputError("", tieTitle({spec.ties[t]}), "takes no hair",
-                       "let it take hair of both sides, or hair that is rooted lower (\"above\")");
+                       "ties before it take theirs first; let it take hair of both sides, or hair that is rooted lower "
+                       "(\"above\")");
     haircut.tied.insert(haircut.tied.end(), ring.begin(), ring.end());
     const HairTie& tie = haircut.ties[t];
     haircut.bands.push_back(

@@ -21,9 +21,17 @@ using app::Rigid;
 using app::Vec3;
 
 // A trunk with two humps of 3 cm in front, under a head: a joint and one fitted ellipsoid each.
-double trunkRadius(const Vec3& d) {
+double humps(const Vec3& d) {
   const auto hump = [&](double x) { return std::exp(-(d - Vec3(x, 0.2, 0.7).normalized()).squaredNorm() / 0.06); };
-  return 0.15 + 0.03 * (hump(0.5) + hump(-0.5));
+  return hump(0.5) + hump(-0.5);
+}
+
+double trunkRadius(const Vec3& d) {
+  return 0.15 + 0.03 * humps(d);
+}
+
+double lowHumpsRadius(const Vec3& d) {
+  return 0.15 + 0.012 * humps(d);
 }
 
 void addBall(int joint, const Vec3& center, double (*radius)(const Vec3&), app::Character& c) {
@@ -57,7 +65,8 @@ double boxRadius(const Vec3& d) {
   return 0.12 / d.cwiseAbs().maxCoeff();
 }
 
-app::Character humpedFigure(double (*head_radius)(const Vec3&) = headRadius) {
+app::Character humpedFigure(double (*head_radius)(const Vec3&) = headRadius,
+                            double (*trunk_radius)(const Vec3&) = trunkRadius) {
   app::Character c;
   const Vec3 trunk(0, 1.2, 0), head(0, 1.54, 0);
   for (const auto& [name, place] : {std::pair("chest", trunk), std::pair("head", head)}) {
@@ -68,7 +77,7 @@ app::Character humpedFigure(double (*head_radius)(const Vec3&) = headRadius) {
   }
   c.head_joint = 1;
   c.scalp.head_height = 0.24;
-  addBall(0, trunk, trunkRadius, c);
+  addBall(0, trunk, trunk_radius, c);
   addBall(1, head, head_radius, c);
   std::vector<app::BodyPart> parts(2);
   const std::vector<app::FitPoint> points = app::surfacePoints(c.mesh);
@@ -110,7 +119,7 @@ TEST(SkinCover, AddsEllipsoidsWhereSkinSticksOut) {
 TEST(SkinCover, GoesOnWhileSkinSticksOut) {
   int beyond = 0, sufficed = 0;
   for (int enough = 1; enough <= 6; ++enough) {
-    app::Character c = humpedFigure();
+    app::Character c = humpedFigure(headRadius, lowHumpsRadius);
     const app::CoverReport report = app::coverSkin(c, enough);
     EXPECT_LE(report.added, 2 * enough);
     EXPECT_TRUE(report.added == 2 * enough || report.after <= 0.003) << enough;
@@ -188,6 +197,15 @@ TEST(SkinCover, ABoxIsSetApart) {
   app::showSkin(c, parts, app::restPose(c.skeleton), Vec3::Zero(), shown);
   EXPECT_EQ(shown.ellipsoids.size(), c.ellipsoids.size() - 1);
   EXPECT_EQ(shown.grids.size(), 1u);
+}
+
+// Parts that few ellipsoids do not fit are taken by distances, not filled with many small ones.
+TEST(SkinCover, BoxesAreSetApartBeforeSmallEllipsoidsAreAdded) {
+  const std::string model = "/usr/share/assimp/models/FBX/huesitos.fbx";
+  if (!fs::exists(model)) GTEST_SKIP() << "assimp-testmodels is not installed";
+  const app::Character c = app::loadCharacter(model, "");
+  EXPECT_LT(c.ellipsoids.size(), 40u);
+  EXPECT_GT(std::ranges::count_if(c.ellipsoids, &app::BodyEllipsoid::by_distances), 0);
 }
 
 // A box of a head moves as one, as its distances do; skin that another joint shares is left blended.
