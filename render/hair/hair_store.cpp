@@ -381,7 +381,8 @@ long HairStore::refresh(HairResources& hair, const HairInput& input, const DrawS
   const bool light_moved = hair.light_revision != light_revision_;
   std::vector<SkinEllipsoid> skin = skinNear(input.skin, hair.around.low, hair.around.high);
   std::vector<SkinGrid> skin_grids = skinNear(input.skin_grids, hair.around.low, hair.around.high);
-  const bool fresh_skin = skin != hair.skin || skin_grids != hair.skin_grids;
+  const bool fresh_body = !std::ranges::equal(input.skin, hair.body);
+  const bool fresh_skin = fresh_body || skin != hair.skin || skin_grids != hair.skin_grids;
   if (!fresh_positions && !fresh_count && !fresh_look && !light_moved && !fresh_skin) return 0;
   if (fresh_positions && !allFinite(input.positions)) {
     // Never draw NaN: what was last good stays on screen, and the old revision makes the next positions be tried.
@@ -403,12 +404,13 @@ long HairStore::refresh(HairResources& hair, const HairInput& input, const DrawS
     hair.scattering = &scatteringOf(input.look, uploaded);
   }
   hair.light_revision = light_revision_;
+  hair.body.assign(input.skin.begin(), input.skin.end());
   hair.skin = std::move(skin);
   hair.skin_grids = std::move(skin_grids);
   hair.skin_distances = hair.skin_grids.empty() ? nullptr : &distancesOf(input.skin_grids, uploaded);
   const bool renew = fresh_count || fresh_look || light_moved;
   uploaded += uploadSkin(hair, input.positions, skips);
-  if (!renew && !fresh_positions) return uploaded + uploadBlock(hair);
+  if (!renew && !fresh_positions && !fresh_body) return uploaded + uploadBlock(hair);
   return uploaded + uploadVertices(hair, input, renew, skips) + uploadBlock(hair);
 }
 

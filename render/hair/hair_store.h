@@ -77,6 +77,7 @@ struct HairResources {
   Bounds bounds, around;                               // of the vertices; with room for all strands
   int strands = -1, segments = 0, asked_segments = 0;  // segments: a layer, with those that curls need
   HairLook look;
+  std::vector<SkinEllipsoid> body;          // all that stands before fill and rim
   std::vector<SkinEllipsoid> skin;          // near the hair
   std::vector<SkinGrid> skin_grids;         // the same
   SkinDistances* skin_distances = nullptr;  // of all grids of the body, if there are any
