@@ -17,19 +17,19 @@ constexpr std::size_t kMaxSamples = 3000;
 constexpr int kMoments = 24;                      // of all clips together, beside the rest pose
 constexpr float kFarGap = 0.05f;                  // m: all larger gaps are kept as this
 const float kCovered = render::shared::kSkinGap;  // m: skin that sticks out less counts as covered
-constexpr float kAllowed = 0.003f;                // m, likewise once there are many
-constexpr double kPatch = 0.40;   // head heights: radius of the patch that an added ellipsoid begins with
-constexpr double kSmaller = 0.6;  // of that, for a patch whose ellipsoid swallows too much
-constexpr int kTries = 3, kMoreTries = 6;
-constexpr double kHold = 0.02;           // m, see fitCover
-constexpr double kAround = 0.04;         // m: skin of another part so near may hide a place
-constexpr double kHidden = 0.003;        // m under that
-constexpr double kStraight = 0.7;        // cosine of the way there to that skin's normal, at least
-constexpr std::size_t kMaxPoints = 400;  // of a fit's own
-constexpr float kFits = 0.012f;          // m that skin may stick out at worst, below the chin, of ellipsoids that fit
-constexpr double kUnfitShare = 0.05;     // of a joint's skin, the head's included, that may stick out farther
-constexpr int kRounds = 3;               // of setting unfit joints apart
-constexpr float kBuried = 0.002f;        // m, that skin above the chin may lie deeper in an added ellipsoid than before
+constexpr float kAllowed = 0.003f;                // m, likewise once there are many ellipsoids
+constexpr double kPatch = 0.40;            // head heights: radius of the patch that an added ellipsoid begins with
+constexpr double kSmaller = 0.6;           // of that, for a patch whose ellipsoid swallows too much
+constexpr int kTries = 3, kMoreTries = 6;  // patches of one place; more once there are many ellipsoids
+constexpr double kHold = 0.02;             // m, see fitCover
+constexpr double kAround = 0.04;           // m: skin of another part so near may hide a place
+constexpr double kHidden = 0.003;          // m under that
+constexpr double kStraight = 0.7;          // cosine of the way there to that skin's normal, at least
+constexpr std::size_t kMaxPoints = 400;    // of a fit's own
+constexpr float kFits = 0.012f;            // m that skin may stick out at worst, below the chin, of ellipsoids that fit
+constexpr double kUnfitShare = 0.05;       // of a joint's skin, the head's included, that may stick out farther
+constexpr int kRounds = 3;                 // of setting unfit joints apart
+constexpr float kBuried = 0.002f;  // m, that skin above the chin may lie deeper in an added ellipsoid than before
 
 // Gaps (m) of every place, or of those at rest, to one ellipsoid.
 using Gaps = std::vector<float>;
@@ -278,7 +278,7 @@ bool Cover::add(std::size_t place, int tries) {
   return false;
 }
 
-// Of those beside the given ones, those that skin sticks out of.
+// Fits the added ellipsoids that skin sticks out of anew.
 void Cover::refitAdded() {
   std::vector<unsigned char> due(gaps_.size(), 0);
   for (std::size_t i = 0; i < nearest_.size(); ++i) {
@@ -305,7 +305,7 @@ double Cover::over() const {
   return over / std::max(weight, 1e-12);
 }
 
-// Until no skin that is asked for sticks out by more than `least`, or there are `most` beside the given ones.
+// Adds ellipsoids until no skin that is asked for sticks out by more than `least`, or `most` have been added.
 void Cover::coverAll(const Pass& pass) {
   given_up_.assign(given_up_.size(), 0);
   const std::size_t most = given_ + static_cast<std::size_t>(pass.most);

@@ -17,9 +17,10 @@ using Eigen::Vector3f;
 // Held to traced light; see docs/picture.md.
 constexpr float kClumpGaps = 0.4f;
 constexpr float kHeadDepth = 6.0f;  // optical depth of a ray through the head's middle; softened at its rim
-// Likewise of the body's ellipsoids, whose shadow ends well inside of them: a hair mesh has too few vertices for its
-// edge, and hair that lies on skin is lit. It narrows with the distance, and ends after kBodyReach (m): the lights are
-// soft. Thin ones are left out: 1/m, the norm of a ball's map.
+// The body's ellipsoids have the same depth. Their shadow ends kBodyRim radii from their middle, for a hair mesh has
+// too few vertices for its edge, and hair that lies on skin is lit. The lights are soft: the shadow narrows with the
+// distance and ends after kBodyReach (m). Thin ellipsoids are left out: kThinnestBlocker (1/m) is the norm of a ball's
+// map.
 constexpr float kBodyRim = 0.9f, kBodySoft = 0.3f, kBodyReach = 0.5f, kThinnestBlocker = 60;
 // Hair that is drawn together fills a cell with many depths, and the lattice blurs its surface into them: what the eye
 // sees would count as buried. Of what a cell holds beyond loose hair's kLooseDepth, kBlurredCells lie behind it. Both
@@ -81,7 +82,7 @@ void addBody(std::span<const float> positions, const Vector3f& to_light, std::sp
   const Vector3f center(x.mean(), y.mean(), z.mean());
   const float radius =
       std::sqrt(((x - center.x()).square() + (y - center.y()).square() + (z - center.z()).square()).maxCoeff());
-  // By which a ray misses an ellipsoid's middle, in radii, squared.
+  // The nearest that a vertex's ray comes to an ellipsoid's middle, in radii, squared.
   Eigen::ArrayXf least = Eigen::ArrayXf::Constant(count, kBodyRim * kBodyRim), before(count), squared(count);
   for (const SkinEllipsoid& ellipsoid : skin) {
     Eigen::Matrix<float, 3, 4> to_ball;
