@@ -109,7 +109,7 @@ struct HairInput {
   int segments_per_layer = 3;        // 1..8
   HairLook look;
   LookShares shares;                     // they go with the layout
-  std::span<const SkinEllipsoid> skin;   // drawn strands are lifted out of these; the nearest 48
+  std::span<const SkinEllipsoid> skin;   // strands are lifted out of the nearest 48; all take soft light
   std::span<const SkinGrid> skin_grids;  // and of these; 16 of those near
 };
 

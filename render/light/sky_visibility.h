@@ -1,6 +1,6 @@
 // How much light of the sky, the fill and the rim light reaches each hair mesh vertex: optical depths through a lattice
-// of hair density that is fixed to the head, and the head as a ball fitted to the roots. Soft light needs no more; the
-// key light has its deep opacity maps. A hair mesh knows its prisms' volumes, so the density is exact when hair is
+// of hair density that is fixed to the head, the head as a ball fitted to the roots, and before fill and rim the body's
+// ellipsoids. The key light has its deep opacity maps. A hair mesh knows its prisms' volumes, so the density is exact when hair is
 // squeezed or spread.
 #pragma once
 
