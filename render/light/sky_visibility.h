@@ -1,7 +1,7 @@
 // How much light of the sky, the fill and the rim light reaches each hair mesh vertex: optical depths through a lattice
 // of hair density that is fixed to the head, the head as a ball fitted to the roots, and before fill and rim the body's
-// ellipsoids. The key light has its deep opacity maps. A hair mesh knows its prisms' volumes, so the density is exact when hair is
-// squeezed or spread.
+// ellipsoids. The key light has its deep opacity maps. A hair mesh knows its prisms' volumes, so the density is exact
+// when hair is squeezed or spread.
 #pragma once
 
 #include <Eigen/Core>
