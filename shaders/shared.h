@@ -95,6 +95,7 @@ const int kSlotSamples = 5;  // see strand_raster.h
 // Strands out of the skin (shaders/common/skin.glsl).
 const int kMaxSkin = 48;          // ellipsoids of a hair
 const int kMaxSkinGrids = 16;     // and grids: of both together a bit each in 64
+const float kSkinSlack = 0.006;   // m of lift within which the skin that a strand can meet stays the same
 const float kSkinLeft = 0.0001;   // m, that a point may be left in a grid by
 const float kSkinGap = 0.0018;    // m, off an ellipsoid: skin may stick out by so much and counts as covered
 const float kSkinBlend = 0.0015;  // m, on either side of that: there the lift sets in
@@ -168,7 +169,8 @@ SHARED_BLOCK(1, HairBlock) {
   vec4 clumping;   // clump, clump size (m), frizz (m), share of flyaways
   vec4 groups;     // lock, wisp, drift of locks and clumps (m), lift of flyaways (m)
   vec4 waves;      // wave height (m), wave length (m), width of the hairline (m), share of fine hairs there
-  vec4 variation;  // spread of the roots (m), tilt of a strand's highlights at most (rad)
+  vec4 variation;  // spread of the roots (m), tilt of a strand's highlights at most (rad), m that curls, waves
+                   // and frizz take a strand from its guide by at most
   vec4 lobe_width;       // standard deviations (rad) of R, TT, TRT over the half angle; w: cuticle angle
   vec4 gain;             // share of the real hairs' width that is drawn, diffuse, root darkening, tint variation
   vec4 forward_albedo;   // mean forward scattering attenuation a_f (Zinke et al. 2008)
@@ -178,7 +180,8 @@ SHARED_BLOCK(1, HairBlock) {
   ivec4 shares;          // painted shares of the look: first texel of the columns', 0: none; first texel and number of
                          // those along strands
   ivec4 skin_count;      // ellipsoids and grids that strands are lifted out of; steps from layer to layer of a face
-  SHARED_ARRAY(vec4, skin_rows, 4 * kMaxSkin);  // four each, see skin.glsl: world to the ball of radius one; home
+  // Four each: world to the ball of radius one; home, liftsWithin(). See skin.glsl.
+  SHARED_ARRAY(vec4, skin_rows, 4 * kMaxSkin);
   SHARED_ARRAY(vec4, skin_grid_rows, 3 * kMaxSkinGrids);  // three each: world to steps from node to node
   SHARED_ARRAY(ivec4, skin_grid_nodes, kMaxSkinGrids);    // their numbers; w: the first one's texel
 };

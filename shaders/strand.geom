@@ -19,7 +19,7 @@ void main() {
   if (start >= last) return;
   int first = skin_count.x > 0 ? 0 : start, layer = layerOf(strand, pointParameter(strand, first));
   LayerWindow window = layerWindow(strand, layer);
-  SkinLift lift = SkinLift(vec3(0.0), vec3(0.0));
+  SkinLift lift = noLift();
   for (int index = first; index <= min(start + kChunkPoints - 1, last); ++index) {
     float s = pointParameter(strand, index);
     moveWindow(strand, layerOf(strand, s), layer, window);

@@ -23,7 +23,7 @@ void main() {
   float side = hair_shadow_size[draw.w].y;
   int layer = 0;
   LayerWindow window = layerWindow(strand, layer);
-  SkinLift lift = SkinLift(vec3(0.0), vec3(0.0));
+  SkinLift lift = noLift();
   for (int index = 0; index <= last; ++index) {
     float s = pointParameter(strand, index);
     moveWindow(strand, layerOf(strand, s), layer, window);

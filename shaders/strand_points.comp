@@ -41,7 +41,7 @@ void main() {
   if (last < 1) return;
   int layer = 0;
   LayerWindow window = layerWindow(strand, layer);
-  SkinLift lift = SkinLift(vec3(0.0), vec3(0.0));
+  SkinLift lift = noLift();
   for (int index = 0; index <= last; ++index) {
     float s = pointParameter(strand, index);
     moveWindow(strand, layerOf(strand, s), layer, window);

@@ -16,6 +16,11 @@ namespace {
 
 using Eigen::Vector3f;
 
+// m that curls, waves and frizz take a strand from its guide by at most; curl_share: of the curls' radius.
+float curledReach(const HairLook& look, float curl_share) {
+  return 1.5f * curl_share * look.curl_radius + 0.6f * look.wave_height + 3 * look.frizz;
+}
+
 bool allFinite(std::span<const float> values) {
   return std::all_of(values.begin(), values.end(), [](float v) { return std::isfinite(v); });
 }
@@ -99,6 +104,7 @@ long uploadBlock(HairResources& hair) {
   const auto strands = static_cast<float>(std::max(hair.strands, 1));
   const float represented = look.strands_represented / strands;
   const Float3 widths = lobeWidths(look.beta_m);
+  const HairLayout& layout = hair.layout();
   shared::HairBlock block{};
   block.width = {look.strand_radius * std::pow(represented, look.width_compensation), look.taper,
                  representedWidth(look) / strands, look.least_pixels};
@@ -106,14 +112,13 @@ long uploadBlock(HairResources& hair) {
   block.clumping = {look.clump, look.clump_size, look.frizz, look.flyaways};
   block.groups = {look.lock, look.wisp, look.drift, look.flyaway_lift};
   block.waves = {look.wave_height, look.wave_length, look.hairline, look.baby_hairs};
-  block.variation = {look.root_spread, look.shine_variation, 0, 0};
+  block.variation = {look.root_spread, look.shine_variation, curledReach(look, layout.curl_share), 0};
   block.lobe_width = {widths[0], widths[1], widths[2], look.cuticle_angle};
   // Share of the real hairs' width that is drawn; under a half the gaps would let all light in.
   const float covered = std::max(std::pow(represented, look.width_compensation - 1), 0.5f);
   block.gain = {covered, std::clamp(look.diffuse, 0.0f, 1.0f), look.root_darkening, look.tint_variation};
   block.forward_albedo = asVec4(hair.scattering->forward_albedo);
   block.backward_albedo = asVec4(hair.scattering->backward_albedo);
-  const HairLayout& layout = hair.layout();
   block.center = asVec4(hair.head.radius > 0 ? hair.head.center : hair.bounds.center(), layout.width_share);
   block.ball = asVec4(hair.bounds.center(), 0.5f * hair.bounds.diagonal() + sidewaysReach(look, layout.curl_share));
   if (!layout.root_shares.empty()) {
@@ -125,7 +130,8 @@ long uploadBlock(HairResources& hair) {
                       0, 0};
   for (std::size_t i = 0; i < hair.skin.size(); ++i) {
     const auto [x, y, z] = hair.skin[i].home;
-    *std::ranges::copy(hair.skin[i].to_ball, block.skin_rows.begin() + 4 * static_cast<long>(i)).out = {x, y, z, 0};
+    *std::ranges::copy(hair.skin[i].to_ball, block.skin_rows.begin() + 4 * static_cast<long>(i)).out = {
+        x, y, z, liftsWithin(hair.skin[i])};
   }
   for (std::size_t i = 0; i < hair.skin_grids.size(); ++i) {
     const SkinGrid& grid = hair.skin_grids[i];
@@ -192,8 +198,7 @@ constexpr float kSoftLightPixels = 110;
 
 float sidewaysReach(const HairLook& look, float curl_share) {
   return 0.01f + 6 * look.offset + 2 * look.root_spread + look.hairline + 2.5f * look.drift +
-         1.5f * curl_share * look.curl_radius + 0.6f * look.wave_height + 3 * look.frizz + 2 * look.flyaway_lift +
-         look.clump_size * (1 + 2 * look.lock);
+         curledReach(look, curl_share) + 2 * look.flyaway_lift + look.clump_size * (1 + 2 * look.lock);
 }
 
 int HairStyle::fullTableTexel() const {

@@ -36,14 +36,6 @@ Bounds strandsBetween(const HairFace& face, std::span<const float> positions, in
   return box;
 }
 
-// The squared distance from an ellipsoid's middle, in its own measure, beyond which it lifts nothing.
-float reachOf(const SkinEllipsoid& skin) {
-  float steep = 0;
-  for (const auto& row : skin.to_ball) steep += row[0] * row[0] + row[1] * row[1] + row[2] * row[2];
-  const float reach = 1 + (shared::kSkinGap + shared::kSkinBlend) * std::sqrt(steep);
-  return 1.001f * std::min(reach * reach, shared::kSkinFar);
-}
-
 // Whether a point of the box may lie so near.
 bool mayMeet(const SkinEllipsoid& skin, float reach, const Vector3f& middle, const Vector3f& half) {
   float squared = 0;
@@ -76,7 +68,7 @@ void reachSkin(const HairLayout& layout, std::span<const float> positions, std::
   const auto steps = static_cast<std::size_t>(std::max(layout.max_layers - 1, 1));
   const std::uint64_t all = allSkin(skin.size(), grids.size());
   std::vector<float> reaches(skin.size());
-  std::transform(skin.begin(), skin.end(), reaches.begin(), reachOf);
+  std::ranges::transform(skin, reaches.begin(), [](const SkinEllipsoid& one) { return 1.001f * liftsWithin(one); });
   std::vector<Bounds> boxes(steps);
   reached.assign(layout.faces.size() * steps, 0);
   for (std::size_t f = 0; f < layout.faces.size(); ++f) {

@@ -15,6 +15,13 @@ using Eigen::Vector4f;
 using shared::kSkinBack, shared::kSkinBlend, shared::kSkinGap, shared::kSkinLeft, shared::kSkinFar, shared::kSkinMiddle,
     shared::kSkinReturn, shared::kSkinRounds, shared::kSkinTurns, shared::kSkinWhole;
 
+float liftsWithin(const SkinEllipsoid& skin) {
+  float steep = 0;
+  for (const auto& row : skin.to_ball) steep += row[0] * row[0] + row[1] * row[1] + row[2] * row[2];
+  const float reach = 1 + (kSkinGap + kSkinBlend) * std::sqrt(steep);
+  return std::min(1.001f * reach * reach, kSkinFar);
+}
+
 namespace {
 
 // The way out of a piece of skin for a point at a gap (m, signed) from it.
@@ -36,7 +43,7 @@ std::optional<WayOut> wayOutOf(const SkinEllipsoid& e, const Vector3f& point, co
   const Vector4f p = point.homogeneous();
   const Vector3f ball(a.dot(p), b.dot(p), c.dot(p));
   const float squared = ball.squaredNorm();
-  if (squared > kSkinFar) return {};
+  if (squared > kSkinFar || squared > liftsWithin(e)) return {};
   const Vector3f from = ball + std::max(1.0f - squared, 0.0f) * Eigen::Map<const Vector3f>(e.home.data());
   const float off = from.squaredNorm();
   Vector3f leads =

@@ -18,6 +18,10 @@ struct SkinLift {
 // and a tip below it begins where the strand before it was lifted to.
 inline constexpr float kMostLifted = 0.08f;
 
+// The squared distance from an ellipsoid's middle, in its own measure, beyond which it lifts nothing: its surface is
+// farther away than kSkinGap and kSkinBlend.
+float liftsWithin(const SkinEllipsoid& skin);
+
 // `position` (m) of a strand's point leaves ellipsoids and grids; `tangent`, a unit vector, turns with it and is none
 // any more. s: curve parameter, in layers; a root (0) leaves
 // grids, and no ellipsoid. lift: of the point before, on return of this one.

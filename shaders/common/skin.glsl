@@ -3,10 +3,40 @@
 
 layout(binding = kUnitSkinGrids) uniform samplerBuffer skin_distances;  // m, grid after grid
 
-// Of a strand's last point: where it would be without skin, and m that it was lifted by. Zero before the root.
+// Of a strand's last point: where it would be without skin, and m that it was lifted by.
 struct SkinLift {
   vec3 free, by;
+  // Between the layers from `layer` on: the skin that the bundle's strands can meet, and that this strand can where it
+  // is lifted by no more than kSkinSlack from `around`. Bits of ellipsoids, and from bit kMaxSkin on of grids.
+  int layer;
+  uvec2 near, met;
+  vec3 around;
 };
+
+// Before the root.
+SkinLift noLift() { return SkinLift(vec3(0.0), vec3(0.0), -1, uvec2(0u), uvec2(0u), vec3(0.0)); }
+
+// Which of `near` a strand can meet between two layers. p0 to p3: the layers' points, of which the curve leads from p1
+// to p2. The curve lies within its Bezier points; bends: m that the strand leaves it by at most.
+void meetSkin(uvec2 near, int layer, vec3 p0, vec3 p1, vec3 p2, vec3 p3, float bends, inout SkinLift lift) {
+  lift.layer = layer;
+  lift.near = near;
+  lift.met = near;
+  lift.around = lift.by;
+  vec3 middle = 0.5 * (p1 + p2), after = p1 + (p2 - p0) / 6.0, before = p2 - (p3 - p1) / 6.0;
+  float reach = max(0.5 * distance(p1, p2), max(distance(middle, after), distance(middle, before))) + bends +
+                kSkinSlack;
+  vec4 p = vec4(middle + lift.by, 1.0);
+  for (int word = 0; word < 2; ++word)
+    for (uint left = near[word]; left != 0u; left &= left - 1u) {
+      int bit = findLSB(left), i = 32 * word + bit;
+      if (i >= kMaxSkin) break;
+      vec4 a = skin_rows[4 * i], b = skin_rows[4 * i + 1], c = skin_rows[4 * i + 2];
+      vec3 ball = vec3(dot(a, p), dot(b, p), dot(c, p));
+      float steep = sqrt(dot(a.xyz, a.xyz) + dot(b.xyz, b.xyz) + dot(c.xyz, c.xyz));
+      if (length(ball) > sqrt(skin_rows[4 * i + 3].w) + reach * steep) lift.met[word] ^= 1u << bit;
+    }
+}
 
 // The way out of a piece of skin for a point at a gap (m, signed) from it.
 struct WayOut {
@@ -14,14 +44,14 @@ struct WayOut {
   vec3 along, normal;  // normal: shorter where sides meet
 };
 
-// False where the point is not lifted out of ellipsoid i. In the middle the way out turns about. There `back` leads: the
-// way that the strand's point before was lifted, shorter than 1, and the shorter the less that one was lifted. line: a
-// unit vector that the way follows, or zero.
+// False where the point is not lifted out of ellipsoid i: beyond the fourth row's last it never is. In the middle the
+// way out turns about. There `back` leads: the way that the strand's point before was lifted, shorter than 1, and the
+// shorter the less that one was lifted. line: a unit vector that the way follows, or zero.
 bool wayOutOfBall(int i, vec3 point, vec3 back, vec3 line, float blend, out WayOut way) {
   vec4 a = skin_rows[4 * i], b = skin_rows[4 * i + 1], c = skin_rows[4 * i + 2], p = vec4(point, 1.0);
   vec3 ball = vec3(dot(a, p), dot(b, p), dot(c, p));
   float squared = dot(ball, ball);
-  if (squared > kSkinFar) return false;
+  if (squared > skin_rows[4 * i + 3].w) return false;
   vec3 from = ball + max(1.0 - squared, 0.0) * skin_rows[4 * i + 3].xyz;
   float off = dot(from, from);
   vec3 out_of = from.x * a.xyz + from.y * b.xyz + from.z * c.xyz;
@@ -93,10 +123,10 @@ bool wayOutOfGrid(int i, vec3 point, vec3 back, float blend, out WayOut way) {
 // A strand keeps its side: each point begins where the one before it was lifted, and returns with the hair's length.
 // So the tip of a strand that lies over a shoulder does not end in it, or below it.
 //
-// near: a bit for each ellipsoid, and from bit kMaxSkin on for each grid, that the strand can meet between its two layers
-// (render/hair/skin_reach.h).
-void leaveSkin(uvec2 near, float s, inout SkinLift lift, inout vec3 position, inout vec3 tangent) {
+// The skin is what meetSkin() has found for the layers at hand.
+void leaveSkin(float s, inout SkinLift lift, inout vec3 position, inout vec3 tangent) {
   vec3 free = position;
+  uvec2 near = lift.near;
   if (near == uvec2(0u) && lift.by == vec3(0.0)) {
     lift.free = free;
     return;
@@ -107,7 +137,8 @@ void leaveSkin(uvec2 near, float s, inout SkinLift lift, inout vec3 position, in
   tangent -= lift.by / kSkinReturn;
   vec3 lifted = position, turned = tangent;
   vec3 by_grids = vec3(0.0), together = vec3(0.0), line = vec3(0.0);
-  bool moved = near != uvec2(0u);
+  uvec2 among = distance(lift.by, lift.around) > kSkinSlack ? near : lift.met;
+  bool moved = among != uvec2(0u);
   int last = -1;
   for (int round = 0; round < kSkinRounds && moved; ++round) {
     moved = false;
@@ -115,8 +146,8 @@ void leaveSkin(uvec2 near, float s, inout SkinLift lift, inout vec3 position, in
     if (round == kSkinTurns && dot(together, together) > kSkinMiddle) line = normalize(together);
     together = vec3(0.0);
     for (int word = 0; word < 2; ++word)
-      for (uint left = word == 0 ? near.x : near.y; left != 0u; left &= left - 1u) {
-        int i = 32 * word + findLSB(left);
+      for (uint left = among[word]; left != 0u; left &= left - 1u) {
+        int bit = findLSB(left), i = 32 * word + bit;
         bool grid = i >= kMaxSkin;
         WayOut way;
         if (i == last) continue;
@@ -133,10 +164,15 @@ void leaveSkin(uvec2 near, float s, inout SkinLift lift, inout vec3 position, in
         turned += way.share * (bent - 1.0) * dot(way.normal, turned) * way.normal;
         moved = true;
         last = grid ? -1 : i;
+        if (among != near && distance(lifted - free, lift.around) > kSkinSlack) {
+          among = near;
+          left = near[word] & ~((1u << bit) - 1u);
+        }
       }
   }
   float root = smoothstep(0.0, 1.0, s);
   position = mix(position, lifted, root) + (1.0 - root) * by_grids;
   tangent = mix(tangent, turned, root);
-  lift = SkinLift(free, position - free);
+  lift.free = free;
+  lift.by = position - free;
 }

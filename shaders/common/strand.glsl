@@ -364,7 +364,7 @@ vec3 unitOr(vec3 v, vec3 otherwise) {
 int layerOf(in Strand strand, float s) { return clamp(int(s), 0, strand.layers - 2); }
 
 uvec2 skinNear(in Strand strand, int layer) {
-  return skin_count.x > 0 ? texelFetch(skin_texels, strand.face * skin_count.y + layer).xy : uvec2(0u);
+  return texelFetch(skin_texels, strand.face * skin_count.y + layer).xy;
 }
 
 // The points of a strand are asked for one after the other from the root on, where there is skin; lift: see leaveSkin.
@@ -390,7 +390,11 @@ CurvePoint curvePoint(in Strand strand, in LayerWindow window, float s, float fr
     along += stray.y * outward;
   }
   along = unitOr(along, axis);
-  leaveSkin(skinNear(strand, layerOf(strand, s)), s, lift, point.position, along);
+  int layer = layerOf(strand, s);
+  if (skin_count.x > 0) {
+    if (layer != lift.layer) meetSkin(skinNear(strand, layer), layer, p0, p1, p2, p3, mostBent(strand), lift);
+    leaveSkin(s, lift, point.position, along);
+  }
   point.tangent = unitOr(along, axis);
   point.light = mix(window.from.light, window.to.light, f);
   point.behind = mix(window.from.behind, window.to.behind, f);

@@ -92,3 +92,9 @@ vec2 lifted(in Strand strand, float s) {
   float lift = strand.loose * groups.w * (0.2 + 1.8 * chance * chance) + 0.35 * strand.fine * chance * strand.metres;
   return lift * opening(wayAt(strand, s), 0.3 * min(strand.metres, 0.15) + 1e-4);
 }
+
+// m that sideways() and lifted() take a strand from its guide by at most.
+float mostBent(in Strand strand) {
+  return shape.y * (1.0 + 5.0 * strand.loose + 3.0 * strand.rim) + 2.5 * groups.z + variation.z +
+         2.0 * strand.loose * groups.w + 0.41 * strand.fine * strand.metres;
+}
