@@ -16,6 +16,7 @@
 #include "app/output_names.h"
 #include "app/parse_fault.h"
 #include "app/scene/detail/skips.h"
+#include "app/scene/hairdo.h"
 #include "app/scene/parameter_table.h"
 #include "app/scene/view/look_params.h"
 #include "sim/field_text.h"
@@ -119,8 +120,12 @@ struct OptionGroup {
 
 void addSceneOptions(CLI::App& parser, Options& options, Unchecked& unchecked) {
   OptionGroup group{parser, "What is shown"};
-  group.value("--style", options.style, "NAME", "Hair style: short, shoulder, long, bob, pixie, or shaved")
-      ->check(oneOf({kStyleNames.begin(), kStyleNames.end()}));
+  const std::vector<std::string_view> styles = styleChoices();
+  group
+      .value("--style", options.style, "NAME",
+             "Hair style (short, shoulder, long, bob, pixie, shaved), or a hairdo with look and ties: bob_fringe, "
+             "shoulder_layers, long_straight, long_wavy, curly, pony_tail, plaits")
+      ->check(oneOf({styles.begin(), styles.end()}));
   group.value("--resolution", options.resolution, "NAME", "Hair mesh resolution: low, medium, high or ultra")
       ->check(oneOf({"low", "medium", "high", "ultra"}));
   group.value(
@@ -335,8 +340,9 @@ void finishExport(const Unchecked& unchecked, Options& options) {
   if (spec.what != ExportWhat::kStrands && spec.points > 0)
     throw UsageError(
         std::string("--export-points goes with strands; ") +
-        (mesh ? "a .glb file has the hair mesh or cards: leave it out, or name the file .abc, .usda, .hair, .ply or .tfx"
-              : "guides have a point a layer: leave it out"));
+        (mesh
+             ? "a .glb file has the hair mesh or cards: leave it out, or name the file .abc, .usda, .hair, .ply or .tfx"
+             : "guides have a point a layer: leave it out"));
   if (spec.file.ends_with(".tfx") && spec.points > 0 && !isTfxPoints(static_cast<std::size_t>(spec.points)))
     throw UsageError("--export-points cannot be " + std::to_string(spec.points) +
                      " for a .tfx file; give 4, 8, 16, 32 or 64");

@@ -12,6 +12,7 @@
 #include "app/options.h"
 #include "app/scene/comparison.h"
 #include "app/scene/hair_from_file.h"
+#include "app/scene/hairdo.h"
 #include "app/scene/project.h"
 #include "app/scene/view/environment_light.h"
 #include "sim/field_text.h"
@@ -52,24 +53,6 @@ void setCamera(const std::string& text, CameraSpec& camera) {
 void fill(const char* option, std::string& value, const std::string& file) {
   if (!value.empty()) throw UsageError(file + " and " + option + " " + value + " exclude each other; give one of them");
   value = file;
-}
-
-// Throws what is said of a file that is not there: the name that was meant, where the program comes with one.
-[[noreturn]] void refuseMissing(const std::string& file) {
-  std::vector<std::string> names;
-  for (const char* kind : {"scenes", "presets", "clips", "hair"}) {
-    for (const std::string& asset : listAssets(kind, {".json", ".bvh", ".obj"}))
-      names.push_back(std::filesystem::path(asset).filename().string());
-  }
-  const std::vector<std::string_view> candidates(names.begin(), names.end());
-  std::string_view near = sim::nearestName(file, candidates);
-  // An ending that both have says nothing of what was meant.
-  const std::string stem = std::filesystem::path(file).stem().string(),
-                    meant = std::filesystem::path(near).stem().string();
-  const std::string_view one = meant;
-  if (!near.empty() && sim::nearestName(stem, {&one, 1}).empty()) near = {};
-  throw InputError(file, "", "there is no such file",
-                   near.empty() ? "check the path" : "did you mean '" + std::string(near) + "'?");
 }
 
 void checkHairAndStyle(const Options& options) {
@@ -125,8 +108,7 @@ void overrideFields(const Options& options, CharacterSpec& spec) {
 
 void overrideCharacter(const Options& options, CharacterSpec& spec) {
   if (!options.style.empty()) {
-    spec.style = *parseStyle(options.style);
-    chooseHair("", spec);
+    chooseStyle(options.style, spec);
   }
   if (!options.resolution.empty()) spec.resolution = *parseResolution(options.resolution);
   if (!options.hair.empty()) {
@@ -215,7 +197,8 @@ Options sortedOut(Options options) {
   std::string file = options.scene;
   for (const char* kind : {"hair", "clips", "presets", "scenes"}) file = findFile(file, "", kind);
   std::error_code ignored;
-  if (!std::filesystem::exists(file, ignored)) refuseMissing(options.scene);
+  if (!std::filesystem::exists(file, ignored))
+    throw InputError(options.scene, "", "there is no such file", missingMend(options.scene));
   options.scene.clear();
   switch (fileKind(file)) {
     case FileKind::kScene:

@@ -21,6 +21,7 @@ namespace {
 
 constexpr double kSmallestWorn = 0.07,
                  kLargestWorn = 0.65;  // m, the longest side of what is worn; less than ten times apart
+constexpr double kLargestTold = 2.5;   // m, of what "scale" makes larger than that
 constexpr double kNearJoint = 0.35;    // m, from its joint
 // Shares of its points inside the head: of one that does not fit, of one that does. What is in assets/attachments has
 // 0.03 at most, and at 0.9 of its size 0.25 and more.
@@ -144,6 +145,9 @@ bool placeAt(const AttachmentSpec& spec, const PolygonMesh& mesh, const Rigid& u
   Eigen::AlignedBox3d box;
   for (const Vec3& p : surface.points) box.extend(p);
   const double scale = spec.scale > 0 ? spec.scale : wornUnit(spec, mesh, box.sizes().maxCoeff(), note).metres;
+  if (const double longest = spec.size * scale * box.sizes().maxCoeff(); longest > kLargestTold)
+    throw InputError(spec.file, "size", "is " + sim::numberText(std::round(10 * longest) / 10) + " m across",
+                     "leave \"scale\" out, or give metres per unit: 0.01 for centimetres");
   const Vec3 middle = scale * box.center();
   const Vec3 joint = upright.translation();
   const std::array<Vec3, 3> origins{Vec3::Zero(), joint, quarterTurn().transpose() * joint};

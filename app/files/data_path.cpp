@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <cstdlib>
 #include <filesystem>
+#include <string_view>
+
+#include "sim/field_text.h"
 
 namespace app {
 
@@ -41,6 +44,32 @@ std::vector<std::string> listAssets(const std::string& kind, const std::vector<s
   }
   std::sort(files.begin(), files.end());
   return files;
+}
+
+std::string missingMend(const std::string& file) {
+  constexpr std::size_t kMostNames = 2000;
+  std::vector<std::string> names;
+  std::error_code ignored;
+  const fs::path folder = fs::path(file).parent_path();
+  for (fs::directory_iterator at(folder.empty() ? "." : folder, ignored), end; at != end && names.size() < kMostNames;
+       at.increment(ignored))
+    names.push_back(at->path().filename().string());
+  for (const char* kind : {"scenes", "presets", "clips", "hair", "attachments"}) {
+    for (const std::string& asset : listAssets(kind, {".json", ".bvh", ".obj"}))
+      names.push_back(fs::path(asset).filename().string());
+  }
+  // An ending that both have says nothing of what was meant.
+  std::vector<std::string_view> candidates;
+  for (const std::string& name : names) {
+    const std::string meant = stem(name);
+    const std::string_view one = meant;
+    if (fs::path(name).extension() == fs::path(file).extension() && !sim::nearestName(stem(file), {&one, 1}).empty())
+      candidates.push_back(name);
+  }
+  const std::string_view near = sim::nearestName(fs::path(file).filename().string(), candidates);
+  if (near.empty()) return "check the path";
+  const fs::path beside = folder / near;
+  return "did you mean '" + (fs::exists(beside, ignored) ? beside.string() : std::string(near)) + "'?";
 }
 
 std::string stem(const std::string& path) {

@@ -21,6 +21,10 @@ std::string findFile(const std::string& name, const std::string& base_file, cons
 // Names of the files of assets/`kind` that end in one of `endings`, full paths, sorted.
 std::vector<std::string> listAssets(const std::string& kind, const std::vector<std::string>& endings);
 
+// What to do about a file that is not there: the name that was meant, of its folder's or of the program's own files,
+// else to check the path.
+std::string missingMend(const std::string& file);
+
 // "walk" of "/a/b/walk.bvh".
 std::string stem(const std::string& path);
 

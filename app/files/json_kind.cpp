@@ -46,6 +46,19 @@ std::string inQuotes(std::string_view key) {
   return "\"" + std::string(key.substr(0, kLongestKey)) + "\"";
 }
 
+// Where in a scene or preset a key belongs; empty: nowhere.
+std::string homeOf(std::string_view key) {
+  const std::string named = inQuotes(key);
+  if (among(key, kCharacterKeys)) return "a character: \"characters\": [{ " + named + ": ... }]";
+  const std::string section = sectionOf(key);
+  if (section == "hair") return "a character's \"look\", or a preset's \"hair\"";
+  if (!section.empty()) return "the top of the file: \"" + section + "\": { " + named + ": ... }";
+  if (among(key, kSceneKeys)) return "the top of a scene, beside \"characters\"";
+  if (among(key, kCameraKeys)) return "the scene's \"camera\"";
+  if (among(key, kPlaybackKeys)) return "the scene's \"playback\"";
+  return "";
+}
+
 constexpr const char* kWhatThereIs =
     "a scene has \"characters\"; a preset has \"sim\", \"hair\", \"light\" or \"view\"";
 
@@ -84,6 +97,7 @@ void expectTopKeys(const JsonPlace& top, JsonKind kind) {
     if (!section.empty())
       refuse("belongs to the section " + inQuotes(section),
              "write " + inQuotes(section) + ": { " + inQuotes(key) + ": ... }");
+    if (preset && key == "look") refuse("is \"hair\" in a preset", "write \"hair\": { ... }");
     if (preset && jsonKind(top) == JsonKind::kScene)
       refuse("is no preset's: the file is a scene", "open it without an option");
     refuse(scene    ? "is unknown in a scene"
@@ -91,6 +105,17 @@ void expectTopKeys(const JsonPlace& top, JsonKind kind) {
                     : "is unknown in a project",
            sim::nameHint(key, known));
   }
+}
+
+void expectKeys(const JsonPlace& place, Names known) {
+  if (place.value().is_object()) {
+    for (const auto& item : place.value().items()) {
+      if (among(item.key(), known)) continue;
+      if (const std::string home = homeOf(item.key()); !home.empty())
+        place.refuse("unknown key '" + item.key().substr(0, kLongestKey) + "'", "it belongs to " + home);
+    }
+  }
+  place.expectObject(known);
 }
 
 }  // namespace app

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -18,6 +19,10 @@ inline constexpr std::array<std::string_view, 8> kSceneKeys{"name", "characters"
 inline constexpr std::array<std::string_view, 20> kCharacterKeys{
     "motion",   "parts",   "body",        "clip", "style", "resolution", "hair", "reverse_faces", "fit",  "mends",
     "position", "heading", "clip_offset", "loop", "look",  "pins",       "ties", "attachments",   "maps", "curves"};
+inline constexpr std::array<std::string_view, 7> kCameraKeys{"view", "framing", "eye",    "target",
+                                                             "fov",  "follow",  "of_head"};
+inline constexpr std::array<std::string_view, 6> kPlaybackKeys{"speed",     "fps",         "settle",
+                                                               "budget_ms", "deadline_ms", "draw_budget_ms"};
 inline constexpr std::string_view kAutosaveKey = "autosave_of";  // of projects that were kept by themselves alone
 inline constexpr std::array<std::string_view, 5> kProjectKeys{kProjectKey, "scene", "binary", "checksum", kAutosaveKey};
 inline constexpr std::array<std::string_view, 5> kPresetKeys{"name", "sim", "hair", "light", "view"};
@@ -28,5 +33,8 @@ JsonKind jsonKind(const JsonPlace& top);
 
 // Refuses keys at the top of a file that its kind does not have: says where they belong, or what the file is.
 void expectTopKeys(const JsonPlace& top, JsonKind kind);
+
+// Refuses keys that an object within a scene or preset does not have: says where in the file they belong.
+void expectKeys(const JsonPlace& place, std::span<const std::string_view> known);
 
 }  // namespace app

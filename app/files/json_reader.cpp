@@ -30,6 +30,23 @@ std::string reason(const std::string& words) {
   return dash == std::string::npos ? words : words.substr(dash + 2);
 }
 
+// What to do about a fault of syntax; `byte`, from 1, is the last that was read.
+std::string syntaxMend(std::string_view text, std::size_t byte, const std::string& fault) {
+  const bool ends = fault.ends_with("expected '}'") || fault.ends_with("expected ']'");
+  if (fault.find("end of input") != std::string::npos) return "close what is open there by \" ] or }";
+  const char read = byte > 0 && byte <= text.size() ? text[byte - 1] : ' ';
+  if (read == '}' || read == ']') {
+    const std::size_t before = text.find_last_not_of(" \t\r\n", byte > 1 ? byte - 2 : 0);
+    if (byte > 1 && before != std::string_view::npos && text[before] == ',') return "take the comma before it away";
+  }
+  if (ends && fault.find("literal") != std::string::npos && fault.find("invalid") == std::string::npos)
+    return "put a comma before it";
+  if (ends && (read == '{' || read == '[')) return "put a comma before it";
+  if (read == '\'') return "write texts in double quotes";
+  if (read == '/') return "JSON has no comments: take it away";
+  return "mend the syntax there";
+}
+
 std::string quote(const json& value) {
   const std::string text = value.dump(-1, ' ', true, json::error_handler_t::replace);
   return text.size() <= kLongestQuote ? text : text.substr(0, kLongestQuote) + "...";
@@ -61,8 +78,9 @@ json parseJson(std::string_view text, const std::string& file) {
   try {
     return json::parse(text, watch);
   } catch (const json::parse_error& error) {
-    throw InputError(file, lineAndColumn(text, error.byte), "not valid JSON: " + reason(error.what()),
-                     "mend the syntax there");
+    const std::string fault = reason(error.what());
+    throw InputError(file, lineAndColumn(text, error.byte), "not valid JSON: " + fault,
+                     syntaxMend(text, error.byte, fault));
   } catch (const json::exception& error) {
     const std::string words = error.what();
     const std::size_t number = words.find("parsing ");  // a number that overflows follows, in quotes

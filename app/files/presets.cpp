@@ -102,7 +102,7 @@ void resetNamedGroups(const JsonPlace& section, std::span<const Field> table, Ow
 }  // namespace
 
 void readSimRows(const JsonPlace& place, sim::SimParams& params) {
-  place.expectObject(namesOf(sim::paramFields()));
+  expectKeys(place, namesOf(sim::paramFields()));
   for (const sim::ParamField& row : sim::paramFields()) {
     if (!place.has(row.name)) continue;
     const JsonPlace at = place.at(row.name);
@@ -115,7 +115,7 @@ void readSimRows(const JsonPlace& place, sim::SimParams& params) {
 }
 
 void readHairRows(const JsonPlace& place, CharacterLook& look) {
-  place.expectObject(namesOf(hairFields()));
+  expectKeys(place, namesOf(hairFields()));
   for (const HairField& row : hairFields()) {
     if (place.has(row.name)) readRow(place.at(row.name), look, row);
   }
@@ -126,7 +126,7 @@ void readSceneRows(const JsonPlace& place, SceneLook& look, bool light) {
   for (const SceneField& row : sceneFields()) {
     if (isLight(row) == light) names.emplace_back(row.name);
   }
-  place.expectObject(names);
+  expectKeys(place, names);
   for (const SceneField& row : sceneFields()) {
     if (place.has(row.name)) readRow(place.at(row.name), look, row);
   }

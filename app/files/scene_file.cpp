@@ -33,10 +33,11 @@ std::string readFileName(const JsonPlace& place, const std::string& kind) {
   const std::string name = place.text();
   if (name.empty()) return name;
   const std::string file = findFile(name, place.file(), kind);
+  const std::string beside = (std::filesystem::path(place.file()).parent_path() / name).string();
   std::error_code ignored;
   if (!std::filesystem::exists(file, ignored))
     place.refuse("names '" + name.substr(0, 200) + "', which is not there",
-                 "check the path; it is looked for beside the scene");
+                 missingMend(beside) + "; it is looked for beside the scene");
   return file;
 }
 
@@ -59,7 +60,7 @@ json writeMaps(FieldFiles maps) {
 }
 
 CharacterSpec readCharacter(const JsonPlace& place, const CharacterLook& look) {
-  place.expectObject(kCharacterKeys);
+  expectKeys(place, kCharacterKeys);
   CharacterSpec spec;
   spec.look = look;
   spec.motion =
@@ -99,7 +100,7 @@ CharacterSpec readCharacter(const JsonPlace& place, const CharacterLook& look) {
 }
 
 CameraSpec readCamera(const JsonPlace& place) {
-  place.expectObject({"view", "framing", "eye", "target", "fov", "follow", "of_head"});
+  expectKeys(place, kCameraKeys);
   CameraSpec camera;
   if (place.has("view")) camera.view = place.at("view").choice({"front", "three-quarter", "side", "back", "top"});
   if (place.has("framing")) camera.framing = place.at("framing").choice({"head", "bust", "figure"});
@@ -117,7 +118,7 @@ CameraSpec readCamera(const JsonPlace& place) {
 }
 
 PlaybackSpec readPlayback(const JsonPlace& place) {
-  place.expectObject({"speed", "fps", "settle", "budget_ms", "deadline_ms", "draw_budget_ms"});
+  expectKeys(place, kPlaybackKeys);
   PlaybackSpec playback;
   if (place.has("speed")) playback.speed = place.at("speed").number(0, kFastestPlayback);
   if (place.has("fps")) playback.fps = place.at("fps").number(kSlowestFps, kFastestFps);

@@ -139,9 +139,12 @@ void dragView(GLFWwindow* window, double dx, double dy, Session& s) {
   const bool brushes = s.ui.line_held || s.ui.brush.stroking || (s.ui.brush.over_hair && left);
   if (ImGui::GetIO().WantCaptureMouse || brushes) return;
   const double height = viewHeight(window, s.demo);
-  const bool control = glfwGetKey(window, GLFW_KEY_LEFT_CONTROL) == GLFW_PRESS;
+  const auto held = [&](int key, int other) {
+    return glfwGetKey(window, key) == GLFW_PRESS || glfwGetKey(window, other) == GLFW_PRESS;
+  };
+  const bool control = held(GLFW_KEY_LEFT_CONTROL, GLFW_KEY_RIGHT_CONTROL);
   if (control && left) return turnLight(s.mouse_x, s.mouse_y, height, s);
-  const bool shift = glfwGetKey(window, GLFW_KEY_LEFT_SHIFT) == GLFW_PRESS;
+  const bool shift = held(GLFW_KEY_LEFT_SHIFT, GLFW_KEY_RIGHT_SHIFT);
   if (s.buttons[GLFW_MOUSE_BUTTON_RIGHT] || s.buttons[GLFW_MOUSE_BUTTON_MIDDLE] || (shift && left)) {
     pan(dx, dy, height, s.demo.camera);
   } else if (left) {

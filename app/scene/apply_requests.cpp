@@ -21,6 +21,7 @@
 #include "app/scene/edit/paint_brush.h"
 #include "app/scene/edit/vary.h"
 #include "app/scene/hair_from_file.h"
+#include "app/scene/hairdo.h"
 #include "app/scene/project.h"
 #include "app/scene/save_requests.h"
 #include "app/scene/view/environment_light.h"
@@ -69,23 +70,21 @@ void recast(CharacterSpec spec, bool same_motion, std::string title, Demo& demo,
 void changeStyle(const Request& request, Demo& demo) {
   CharacterSpec spec = selectedActor(demo).spec;
   if (request.what == Ask::kStyle) {
-    const auto style = parseStyle(request.name);
-    if (!style)
-      throw InputError("", "style '" + request.name + "'", "is unknown", sim::nameHint(request.name, kStyleNames));
-    spec.style = *style;
+    chooseStyle(request.name, spec);
     spec.pins.clear();
   } else {
     const auto resolution = parseResolution(request.name);
     if (!resolution)
       throw InputError("", "resolution '" + request.name + "'", "is unknown", "choose low, medium, high or ultra");
     spec.resolution = *resolution;
+    chooseHair("", spec);
   }
-  chooseHair("", spec);
-  const bool unpinned = request.what == Ask::kStyle && !selectedActor(demo).spec.pins.empty();
+  const bool restyled = request.what == Ask::kStyle;
+  const bool unpinned = restyled && !selectedActor(demo).spec.pins.empty();
   recast(spec, true,
-         std::string(styleName(spec.style)) + " " + std::string(resolutionName(spec.resolution)) +
-             (unpinned ? ", without the pins of the style before" : ""),
-         demo, request.what == Ask::kStyle);
+         (restyled ? request.name : std::string(styleName(spec.style))) + " " +
+             std::string(resolutionName(spec.resolution)) + (unpinned ? ", without the pins of the style before" : ""),
+         demo, restyled);
 }
 
 void changeHairFile(const std::string& file, Demo& demo) {

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "app/files/errors.h"
 #include "app/scene/attachments.h"
 #include "app/scene/detail/level_of_detail.h"
 #include "app/scene/sim_to_render.h"
@@ -236,12 +237,26 @@ std::string hairNotes(std::span<const Actor> actors) {
   return notes;
 }
 
+namespace {
+
+// Of several characters a fault says whose it is.
+Actor makeOneOf(const Scene& scene, std::size_t i, AssetCache& asset_cache) {
+  try {
+    return makeActor(scene.characters[i], scene.playback, asset_cache);
+  } catch (const InputError& error) {
+    if (scene.file.empty() || scene.characters.size() < 2) throw;
+    throw InputError(scene.file, "/characters/" + std::to_string(i), error.what(), "");
+  }
+}
+
+}  // namespace
+
 Demo openScene(Scene scene, double aspect, bool beside) {
   Demo demo;
   demo.scene = std::move(scene);
   demo.aspect = aspect;
-  for (const CharacterSpec& spec : demo.scene.characters) {
-    demo.actors.push_back(makeActor(spec, demo.scene.playback, demo.asset_cache));
+  for (std::size_t i = 0; i < demo.scene.characters.size(); ++i) {
+    demo.actors.push_back(makeOneOf(demo.scene, i, demo.asset_cache));
     demo.actors.back().steps = demo.actors.size();
   }
   demo.loading.on = beside;

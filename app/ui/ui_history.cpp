@@ -40,8 +40,8 @@ void momentLine(std::size_t done, const std::string& title, Demo& demo, UiState&
 }
 
 void momentLines(Demo& demo, UiState& ui) {
-  momentLine(0, "Opened", demo, ui);
   const EditHistory& edits = demo.edits;
+  momentLine(0, edits.forgot ? "As far back as is kept" : "Opened", demo, ui);
   for (std::size_t k = 0; k < edits.steps.size(); ++k) momentLine(k + 1, titleOf(edits.steps[k]), demo, ui);
 }
 

@@ -13,6 +13,7 @@
 #include "app/files/length_units.h"
 #include "app/files/told_body.h"
 #include "app/scene/background_load.h"
+#include "app/scene/hairdo.h"
 #include "app/ui/ui_widgets.h"
 #include "sim/field_text.h"
 
@@ -383,6 +384,10 @@ void hairTab(Demo& demo, UiState& ui) {
                                 {"Shaved", "Stubble, to grow a hairdo from with the brushes"}},
                                from_file ? -1 : static_cast<int>(actor.spec.style), ui);
     if (style >= 0) postRequest(demo, {Ask::kStyle, std::string(kStyleNames[static_cast<std::size_t>(style)]), ""});
+    rowLabel("Hairdo", "A style with its look, ties and maps, on this figure: the hair of a scene of assets/scenes");
+    static const std::vector<std::string> kHairdos(kHairdoNames.begin(), kHairdoNames.end());
+    if (const std::string hairdo = fileCombo("##hairdo", "choose...", kHairdos, ui); !hairdo.empty())
+      postRequest(demo, {Ask::kStyle, hairdo, ""});
     const int resolution = segments("resolution", {"Low", "Medium", "High", "Ultra"},
                                     from_file ? -1 : static_cast<int>(actor.spec.resolution), ui);
     static constexpr const char* kResolutions[] = {"low", "medium", "high", "ultra"};

@@ -365,6 +365,7 @@ void commitEdit(EditStep step, bool later, EditHistory& history) {
   std::size_t bytes = 0, keep = history.steps.size();
   while (keep > 0 && (bytes += history.steps[keep - 1].other.bytes()) <= kMaxEditBytes) --keep;
   keep = std::min(keep, history.steps.size() - 1);
+  history.forgot = history.forgot || keep > 0;
   history.steps.erase(history.steps.begin(), history.steps.begin() + static_cast<std::ptrdiff_t>(keep));
   history.done = history.steps.size();
 }
@@ -400,7 +401,10 @@ int heldEdits(const BackgroundLoad& loading) {
 void undoEdits(int count, Demo& demo) {
   while (count > 0 && dropHeld(demo)) --count;
   if (count == 0) return;
-  if (demo.edits.done == 0) return notice("nothing to undo: this is where the scene was opened", demo);
+  if (demo.edits.done == 0)
+    return notice(demo.edits.forgot ? "nothing more to undo: what was done before is no longer kept"
+                                    : "nothing to undo: this is where the scene was opened",
+                  demo);
   for (; count > 0 && demo.edits.done > 0; --count) {
     // Taken out: the demo may be replaced by another scene's.
     EditHistory history = std::exchange(demo.edits, {});

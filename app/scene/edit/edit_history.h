@@ -59,6 +59,7 @@ struct EditStep {
 struct EditHistory {
   std::vector<EditStep> steps;  // the first `done` ones are done, the others undone
   std::size_t done = 0;
+  bool forgot = false;   // steps before the first have been dropped
   bool gesture = false;  // the last step goes on: a slider that is dragged makes one step
   long next = 1;         // number of the step after all that there were
   long saved = 0;        // number of the last step done when a scene or project was saved or opened

@@ -240,6 +240,16 @@ const char* whatStays(BrushTool tool) {
   return "hair there is frozen, or has no room to go";
 }
 
+// Whether all hair that the brush reaches is frozen.
+bool allFrozen(const Brush& brush, const sim::HairMesh& mesh, const std::vector<Vec3>& seen) {
+  if (brush.frozen.empty()) return false;
+  for (int v = 0; v < mesh.vertexCount(); ++v) {
+    const auto at = static_cast<std::size_t>(v);
+    if (!mesh.isRoot(v) && brush.frozen[at] < 1 && brushReach(brush, seen[at]) > 0) return false;
+  }
+  return true;
+}
+
 }  // namespace
 
 void applyBrush(const BrushSample& sample, int index, Demo& demo) {
@@ -264,7 +274,9 @@ void applyBrush(const BrushSample& sample, int index, Demo& demo) {
   ShapeBrushes& brushes = handsOn(actor);
   const int moved = brushes.apply(brush, actor.haircut->mesh, seen, actor.body->distance, positions);
   const bool stays = moved == 0 && !(cuts && asksForLess(brushes, *actor.haircut->cut));
-  if (stays && sample.tool != BrushTool::kComb && !goesOn(Ask::kBrush, demo.edits))
+  // A comb's first samples lead nowhere yet.
+  const bool led = sample.tool == BrushTool::kComb && !allFrozen(brush, mesh, seen);
+  if (stays && !led && !goesOn(Ask::kBrush, demo.edits))
     throw InputError("", "the brush", "moves nothing", whatStays(sample.tool));
   if (moved > 0) reshapeHair(positions, index, demo);
   if (cuts) {

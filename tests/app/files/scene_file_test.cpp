@@ -124,6 +124,20 @@ TEST(SceneFile, FaultsNameFilePlaceAndMend) {
       {R"({"characters": [{"ties": [{"at": null}]}]})", "/characters/0/ties/0/at", "left or right"},
       {"{\"characters\": [{}],\n \"sim\": {friction: 1}}", "line 2", ""},
       {"{\"characters\": [{}], \"name\": \"\xff\xfe\"}", "line 1", ""},
+      {R"({"characters": [{"camera": {"view": "back"}}]})", "/characters/0", "the top of a scene"},
+      {R"({"characters": [{"friction": 0.5}]})", "/characters/0", R"("sim": { "friction": ... })"},
+      {R"({"characters": [{"taper": 0.5}]})", "/characters/0", R"(a character's "look")"},
+      {R"({"characters": [{}], "sim": {"strands": 100}})", "/sim: unknown key 'strands'", R"(a character's "look")"},
+      {R"({"characters": [{}], "camera": {"speed": 2}})", "/camera", R"(the scene's "playback")"},
+      {R"({"characters": [{}],})", "line 1, column 21", "take the comma before it away"},
+      {R"({"characters": [{"position": [1, 2, 3,]}]})", "line 1", "take the comma before it away"},
+      {R"({"characters": [{}] "name": "a"})", "line 1", "put a comma before it"},
+      {R"({"characters": [{"position": [1 2, 3]}]})", "line 1", "put a comma before it"},
+      {R"({"characters": [{} {}]})", "line 1", "put a comma before it"},
+      {R"({"characters": [{'motion': ""}]})", "line 1", "double quotes"},
+      {"{\"characters\": [{}] // one\n}", "line 1", "no comments"},
+      {R"({"characters": [{})", "line 1", "close what is open"},
+      {R"({"characters": [{"motion": "wlk.bvh"}]})", "/characters/0/motion", "did you mean 'walk.bvh'?"},
   };
   for (const Case& c : cases) {
     const std::string fault = faultOf(c.text);

@@ -212,6 +212,23 @@ TEST(EditHistory, AThousandRandomEditsUndoneAndDoneAgainEndInTheSameBits) {
   EXPECT_TRUE(demo.message.starts_with("nothing to redo")) << demo.message;
 }
 
+// Beyond so many bytes older steps are dropped.
+TEST(EditHistory, WhatIsNoLongerKeptIsNotCalledTheStart) {
+  app::Demo demo = movingDemo();
+  for (int k = 0; k < 3; ++k) {
+    app::EditStep step;
+    step.request = {Ask::kSetParam, "density", "70"};
+    step.other.cast = {demo.actors[0].spec};
+    step.other.moments.resize(1);
+    step.other.moments[0].hair.positions.resize(app::kMaxEditBytes / sizeof(sim::Vec3) / 32);
+    app::commitEdit(std::move(step), false, demo.edits);
+  }
+  EXPECT_LT(demo.edits.steps.size(), 3u);
+  demo.edits.done = 0;
+  EXPECT_EQ(ask({Ask::kUndo, "", "", 1}, demo), "") << "no fault";
+  EXPECT_TRUE(demo.message.starts_with("nothing more to undo")) << demo.message;
+}
+
 // The next Ctrl+S offers that name.
 TEST(EditHistory, UndoLeavesTheNameThatTheSceneWasSavedBy) {
   app::Demo demo = movingDemo();

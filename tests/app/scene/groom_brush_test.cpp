@@ -359,10 +359,12 @@ TEST(GroomBrush, FrozenHairStaysUntilItIsThawed) {
   const sim::Vec3 start = before[static_cast<std::size_t>(tip)];
   EXPECT_EQ(stroke(app::BrushTool::kFreeze), start);
   EXPECT_EQ(stroke(app::BrushTool::kComb), start);
+  EXPECT_NE(demo.message.find("moves nothing"), std::string::npos) << demo.message;
+  EXPECT_EQ(demo.edits.steps.size(), 1u);
   stroke(app::BrushTool::kThaw);
   EXPECT_TRUE(demo.actors[0].haircut->frozen.empty());
   EXPECT_NE(stroke(app::BrushTool::kComb), start);
-  demo.requests = {{Ask::kUndo, "", "", 3}};
+  demo.requests = {{Ask::kUndo, "", "", 2}};
   app::advanceFrame(demo, 0, {});
   EXPECT_FALSE(demo.actors[0].haircut->frozen.empty()) << "the thaw is undone as well";
   EXPECT_EQ(demo.actors[0].haircut->mesh.shape.positions, before);
