@@ -120,12 +120,11 @@ struct OptionGroup {
 
 void addSceneOptions(CLI::App& parser, Options& options, Unchecked& unchecked) {
   OptionGroup group{parser, "What is shown"};
-  const std::vector<std::string_view> styles = styleChoices();
   group
       .value("--style", options.style, "NAME",
-             "Hair style (short, shoulder, long, bob, pixie, shaved), or a hairdo with look and ties: bob_fringe, "
-             "shoulder_layers, long_straight, long_wavy, curly, pony_tail, plaits")
-      ->check(oneOf({styles.begin(), styles.end()}));
+             "Hair style (short, shoulder, long, bob, pixie, shaved) or hairdo, with look and ties (bob_fringe, curly, "
+             "long_straight, long_wavy, plaits, pony_tail, shoulder_layers)")
+      ->check(oneOf(styleChoices()));
   group.value("--resolution", options.resolution, "NAME", "Hair mesh resolution: low, medium, high or ultra")
       ->check(oneOf({"low", "medium", "high", "ultra"}));
   group.value(

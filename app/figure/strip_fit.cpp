@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "app/figure/hair_fit.h"
+#include "app/figure/head_model.h"
 #include "app/files/errors.h"
 #include "app/files/polygon_file.h"
 
@@ -16,6 +17,7 @@ namespace {
 constexpr double kTogether = 1.1;      // of the tips' spread: roots' ends lie no further apart
 constexpr double kStandsNearer = 0.5;  // of the highest ends' distance from the head
 constexpr double kOtherAxis = 0.6;     // of the distance with y up: z is up
+constexpr double kNearerTip = 0.5;     // of the root's distance: the tip is the root
 
 // What brought points from the one place to the other, turned, scaled and moved; at least four in no plane.
 Eigen::Affine3d placeOf(const std::vector<Vec3>& from, const std::vector<Vec3>& to) {
@@ -86,16 +88,55 @@ std::optional<FittedStrips> fitStanding(const PolygonMesh& mesh, StripOptions op
   return std::nullopt;
 }
 
+// Single strips whose other end is on the head are rooted there, where fewer are rooted away from it then.
+void turnSingle(const PolygonMesh& mesh, StripOptions options, bool up_given, const std::string& file,
+                const Character& character, FittedStrips& fitted) {
+  if (options.root != RootEdge::kAuto || options.other_end || !options.flipped.empty() ||
+      farFromHead(fitted.conversion.mesh.shape, character))
+    return;
+  options.flipped = rootedAway(fitted.conversion.followed, character, fitted.place);
+  if (options.flipped.empty() || 2 * options.flipped.size() > fitted.conversion.followed.size()) return;
+  try {
+    FittedStrips turned = fitEitherUp(mesh, options, up_given, file, character, true);
+    if (rootedAway(turned.conversion.followed, character, turned.place).size() >= options.flipped.size()) return;
+    turned.turned = options.flipped;
+    turned.conversion.turned_by_head = true;
+    fitted = std::move(turned);
+  } catch (const InputError&) {
+    // turned about it is no strip
+  }
+}
+
 }  // namespace
+
+std::vector<int> rootedAway(const std::vector<FollowedStrip>& strips, const Character& character,
+                            const Eigen::Affine3d& place) {
+  const HeadModel head = headModelOf(character);
+  std::vector<int> numbers;
+  for (const FollowedStrip& strip : strips) {
+    const Vec3 root = place * middleOf(strip.rows.rows.front());
+    const Vec3 tip = place * middleOf(strip.rows.rows.back()) - character.scalp.center;
+    // Tips of long hair are near to the body, too, on shoulders and back.
+    const double root_off = std::abs(head.distance(root.cast<float>())),
+                 tip_off = std::abs(tip.norm() - character.scalp.radiusAt(tip));
+    if (root_off > kAtScalp && tip_off < kAtScalp && tip_off < kNearerTip * root_off) numbers.push_back(strip.number);
+  }
+  return numbers;
+}
 
 FittedStrips fitStrips(const PolygonMesh& mesh, const StripOptions& options, bool up_given, const std::string& file,
                        const Character& character, bool mend) {
   FittedStrips fitted = fitEitherUp(mesh, options, up_given, file, character, mend);
-  if (!mend || fitted.as_made_distance <= kFarRoots || !fitted.conversion.scalp_points.empty()) return fitted;
+  if (!mend || !fitted.conversion.scalp_points.empty()) return fitted;
+  if (fitted.as_made_distance <= kFarRoots) {
+    turnSingle(mesh, options, up_given, file, character, fitted);
+    return fitted;
+  }
   if (options.root == RootEdge::kAuto) {
     std::optional<FittedStrips> standing = fitStanding(mesh, options, up_given, file, character, fitted);
     if (standing) return std::move(*standing);
   }
+  turnSingle(mesh, options, up_given, file, character, fitted);
   if (farFromHead(fitted.conversion.mesh.shape, character))
     fitted.fit +=
         "; the file has no head that tells where its roots are: hairmesh-convert takes one by --scalp FILE, and the "

@@ -27,10 +27,8 @@ namespace app {
 
 namespace {
 
-constexpr double kFloatingRoot = 0.03;                 // m from the body: rooted nowhere
-constexpr double kAtScalp = 0.02;                      // m: on it
-constexpr double kNearerTip = 0.5;                     // of the root's distance: the tip is the root
-constexpr double kDeepInBody = 0.006, kByRoot = 0.01;  // m
+constexpr double kFloatingRoot = 0.03;                                          // m from the body: rooted nowhere
+constexpr double kDeepInBody = 0.006, kByRoot = 0.01;                           // m
 constexpr double kThinnestCard = 0.002, kWidestCard = 0.12, kUsualCard = 0.02;  // m
 constexpr std::size_t kManyPieces = 10;
 constexpr double kOverHead = 0.05;                     // m, spread of the roots
@@ -84,7 +82,7 @@ struct StripInspector {
   void unit();
   void axes();
   void roots(const FittedStrips& fitted, const Character& character);
-  void ends();
+  void ends(const FittedStrips& fitted, const Character& character);
   void widths();
   void body();
 };
@@ -175,12 +173,13 @@ void StripInspector::roots(const FittedStrips& fitted, const Character& characte
 }
 
 // Pieces rooted at the wrong end, and those that are rooted nowhere.
-void StripInspector::ends() {
+void StripInspector::ends(const FittedStrips& fitted, const Character& character) {
+  const std::vector<int> away = rootedAway(strips.followed, character, place);
   std::vector<int> reversed, floating, unclear;
   for (const FollowedStrip& strip : strips.followed) {
     const double root = std::abs(distance(middleOf(strip.rows.rows.front()))),
                  tip = offScalp(middleOf(strip.rows.rows.back()));
-    if (root > kAtScalp && tip < kAtScalp && tip < kNearerTip * root) {
+    if (std::ranges::find(away, strip.number) != away.end()) {
       reversed.push_back(strip.number);
     } else if (root > kFloatingRoot) {
       floating.push_back(strip.number);
@@ -190,6 +189,11 @@ void StripInspector::ends() {
   }
   wrong += reversed.size() + floating.size();
   const std::string of = " of " + countOf(strips.followed.size(), "piece");
+  if (!fitted.turned.empty())
+    add("reversed",
+        piecesText(fitted.turned) + of + verbOf(fitted.turned, " has its", " have their") +
+            " other end on the head, and root there",
+        "--flip-strips " + commaList(fitted.turned), true);
   if (!reversed.empty()) {
     const bool all = reversed.size() == strips.followed.size();
     add("reversed",
@@ -261,7 +265,7 @@ GroomInspection inspectWithUp(const PolygonMesh& mesh, const StripOptions& optio
   inspector.unit();
   inspector.axes();
   inspector.roots(fitted, character);
-  inspector.ends();
+  inspector.ends(fitted, character);
   inspector.widths();
   inspector.body();
   bad = static_cast<double>(inspector.wrong) / static_cast<double>(strips.followed.size());

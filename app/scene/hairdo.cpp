@@ -10,16 +10,19 @@
 
 namespace app {
 
-std::vector<std::string_view> styleChoices() {
-  std::vector<std::string_view> names(kStyleNames.begin(), kStyleNames.end());
+std::vector<std::string> styleChoices() {
+  std::vector<std::string> names(kStyleNames.begin(), kStyleNames.end());
   names.insert(names.end(), kHairdoNames.begin(), kHairdoNames.end());
   return names;
 }
 
 void chooseStyle(const std::string& name, CharacterSpec& spec) {
   const std::optional<Style> style = parseStyle(name);
-  if (!style && std::ranges::find(kHairdoNames, name) == kHairdoNames.end())
-    throw InputError("", "style '" + name + "'", "is unknown", sim::nameHint(name, styleChoices()));
+  if (!style && std::ranges::find(kHairdoNames, name) == kHairdoNames.end()) {
+    const std::vector<std::string> choices = styleChoices();
+    const std::vector<std::string_view> names(choices.begin(), choices.end());
+    throw InputError("", "style '" + name + "'", "is unknown", sim::nameHint(name, names));
+  }
   chooseHair("", spec);
   if (style) {
     spec.style = *style;

@@ -14,7 +14,7 @@ inline constexpr std::array<std::string_view, 7> kHairdoNames{
     "bob_fringe", "shoulder_layers", "long_straight", "long_wavy", "curly", "pony_tail", "plaits"};
 
 // The styles and the hairdos.
-std::vector<std::string_view> styleChoices();
+std::vector<std::string> styleChoices();
 
 // Puts a style on, which leaves the look and ties as they are, or a hairdo with its style, look, ties, maps and curves.
 // Resolution, figure and motion stay. Throws InputError where there is none of that name, or its file cannot be read.

@@ -288,8 +288,9 @@ std::string rootReport(const StripConversion& conversion) {
   std::string text = reportLine("root edges    %s, of %zu of %zu pieces; --root-edge and --flip-strips overrule it",
                                 conversion.roots.c_str(), all - turned, all);
   if (turned > 0)
-    text += reportLine("turned        %s: rooted at the other end, as asked for",
-                       turned == all ? "all" : pieceNumbers(conversion, &FollowedStrip::turned).c_str());
+    text += reportLine("turned        %s: rooted at the other end, %s",
+                       turned == all ? "all" : pieceNumbers(conversion, &FollowedStrip::turned).c_str(),
+                       conversion.turned_by_head ? "which is on the head" : "as asked for");
   if (conversion.by_scalp)
     text +=
         reportLine("              roots are %s from the scalp, tips %s",

@@ -50,6 +50,7 @@ struct StripConversion {
   std::vector<std::string> left_out;          // "strip 3 ('hair_back'): ..."
   std::vector<int> astray;                    // numbers of pieces left out, which would tell a wrong unit and place
   int cut = 0;                                // strips whose last rows were left out
+  bool turned_by_head = false;                // those that are turned are so for their other end is on the head
   std::string scalp;                          // objects taken for the scalp
   std::vector<Eigen::Vector3d> scalp_points;  // m, the file's axes: all over it
 };

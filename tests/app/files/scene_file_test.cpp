@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
+#include <span>
 #include <string>
 
 #include "app/files/data_path.h"
@@ -78,11 +79,22 @@ TEST(SceneFile, TiesMayBeANameAsOnTheCommandLine) {
   EXPECT_EQ(ties[0].place, "left");
 }
 
+struct FaultCase {
+  const char *text, *place, *mend;
+};
+
+void expectFaults(std::span<const FaultCase> cases) {
+  for (const FaultCase& c : cases) {
+    const std::string fault = faultOf(c.text);
+    ASSERT_FALSE(fault.empty()) << "accepted: " << c.text;
+    EXPECT_NE(fault.find(c.place), std::string::npos) << c.text << "\n  -> " << fault;
+    EXPECT_NE(fault.find(c.mend), std::string::npos) << c.text << "\n  -> " << fault;
+    EXPECT_LT(fault.size(), 1200u) << c.text;
+  }
+}
+
 TEST(SceneFile, FaultsNameFilePlaceAndMend) {
-  struct Case {
-    const char *text, *place, *mend;
-  };
-  const Case cases[] = {
+  const FaultCase cases[] = {
       {"", "line 1", ""},
       {"[", "line 1", ""},
       {"{}", "scene.json", "characters"},
@@ -124,6 +136,12 @@ TEST(SceneFile, FaultsNameFilePlaceAndMend) {
       {R"({"characters": [{"ties": [{"at": null}]}]})", "/characters/0/ties/0/at", "left or right"},
       {"{\"characters\": [{}],\n \"sim\": {friction: 1}}", "line 2", ""},
       {"{\"characters\": [{}], \"name\": \"\xff\xfe\"}", "line 1", ""},
+  };
+  expectFaults(cases);
+}
+
+TEST(SceneFile, SyntaxIsMendedAndAKeyToldWhereItBelongs) {
+  const FaultCase cases[] = {
       {R"({"characters": [{"camera": {"view": "back"}}]})", "/characters/0", "the top of a scene"},
       {R"({"characters": [{"friction": 0.5}]})", "/characters/0", R"("sim": { "friction": ... })"},
       {R"({"characters": [{"taper": 0.5}]})", "/characters/0", R"(a character's "look")"},
@@ -139,13 +157,7 @@ TEST(SceneFile, FaultsNameFilePlaceAndMend) {
       {R"({"characters": [{})", "line 1", "close what is open"},
       {R"({"characters": [{"motion": "wlk.bvh"}]})", "/characters/0/motion", "did you mean 'walk.bvh'?"},
   };
-  for (const Case& c : cases) {
-    const std::string fault = faultOf(c.text);
-    ASSERT_FALSE(fault.empty()) << "accepted: " << c.text;
-    EXPECT_NE(fault.find(c.place), std::string::npos) << c.text << "\n  -> " << fault;
-    EXPECT_NE(fault.find(c.mend), std::string::npos) << c.text << "\n  -> " << fault;
-    EXPECT_LT(fault.size(), 1200u) << c.text;
-  }
+  expectFaults(cases);
 }
 
 // By its content, whatever it is called; and a key in a wrong place is told where it belongs.
