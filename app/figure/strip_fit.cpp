@@ -101,6 +101,7 @@ void turnSingle(const PolygonMesh& mesh, StripOptions options, bool up_given, co
     if (rootedAway(turned.conversion.followed, character, turned.place).size() >= options.flipped.size()) return;
     turned.turned = options.flipped;
     turned.conversion.turned_by_head = true;
+    for (FollowedStrip& strip : turned.conversion.followed) strip.unclear = strip.unclear && !strip.turned;
     fitted = std::move(turned);
   } catch (const InputError&) {
     // turned about it is no strip
