@@ -135,6 +135,25 @@ void applyTies(const CharacterSpec& spec, const LoadedBody& body, sim::HairMeshS
   std::ranges::sort(haircut.wound);
 }
 
+// A style for which a head leaves no room may lie in the body.
+void sayDepth(const sim::HairMeshShape& shape, const BodyDistance& body, Haircut& haircut) {
+  constexpr double kDeep = 0.01;  // m
+  double deepest = 0;
+  int count = 0;
+  for (int c = 0; c < shape.columnCount(); ++c) {
+    for (int v = shape.column_first[c] + 1; v < shape.column_first[c + 1]; ++v) {
+      const double depth = -body(shape.positions[static_cast<std::size_t>(v)]);
+      count += depth > kDeep;
+      deepest = std::max(deepest, depth);
+    }
+  }
+  if (count > 0)
+    addNote(std::to_string(count) + " of " + std::to_string(shape.positions.size()) + " vertices lie up to " +
+                std::to_string(std::lround(1000 * deepest)) +
+                " mm inside the body: this head leaves the style no room at that resolution",
+            haircut);
+}
+
 // The hair as it grows, cut by a map.
 sim::HairMeshShape grownHair(const CharacterSpec& spec, const LoadedBody& body, Haircut& haircut) {
   const Scalp& scalp = body.character.scalp;
@@ -142,6 +161,7 @@ sim::HairMeshShape grownHair(const CharacterSpec& spec, const LoadedBody& body, 
                                                : hairFromFile(spec, body.character, haircut);
   // Hair of a file may lie nearer to the body than a style's.
   const BodyDistance around = spec.hair.empty() ? body.distance : [](const Vec3&) { return 1.0; };
+  if (spec.hair.empty()) sayDepth(shape, body.distance, haircut);
   haircut.unpainted = shape.positions;
   if (spec.maps.length.empty()) return shape;
   constexpr double kWorthSaying = 0.15;

@@ -72,6 +72,12 @@ sim::HairMeshShape shavedTo(double length, int layers, const sim::HairMeshShape&
   return shape;
 }
 
+// Hair that fell around a post comes out of the body, where its prisms allow that.
+void leaveBody(const BodyDistance& body, double fatness, sim::HairMeshShape& shape) {
+  sim::HairMeshShape outside = shape;
+  if (untangle(body, fatness, kGap, outside) > kMinFatness) shape = std::move(outside);
+}
+
 }  // namespace
 
 double Scalp::radiusAt(const Vec3& direction) const {
@@ -126,7 +132,9 @@ sim::HairMeshShape makeStyle(Style style, Resolution resolution, const Scalp& sc
       fatness = untangle(*attempt.around, kFatnessRefined, kGap, woven.shape);
     }
     shape = std::move(woven.shape);
-    if (fatness > kMinFatness) break;
+    if (fatness <= kMinFatness) continue;
+    if (attempt.around == &post) leaveBody(scaled_body, refining ? kFatnessRefined : kFatness, shape);
+    break;
   }
   for (Vec3& p : shape.positions) p *= scale;
   return shape;
