@@ -116,7 +116,7 @@ void StripInspector::area() {
   }
   if (count == 0) return;
   add("zero-length",
-      countOf(count, "face") + " of strips without length or width, of '" + objects.front() + "'" +
+      countOf(count, "face") + " without length or width, of '" + objects.front() + "'" +
           (objects.size() > 1 ? " and " + std::to_string(objects.size() - 1) + " more objects" : ""),
       "they are left out", true);
 }

@@ -5,6 +5,7 @@
 
 #include "app/files/errors.h"
 #include "app/files/file_ending.h"
+#include "app/files/file_kind.h"
 #include "app/files/text_file.h"
 #include "app/groom/formats/alembic_file.h"
 #include "app/groom/formats/groom_bytes.h"
@@ -67,11 +68,7 @@ bool hasGroomEnding(const std::string& file) {
 
 Groom readGroom(std::string_view bytes, const std::string& file, GroomHints* hints) {
   const std::optional<GroomFormat> format = groomFormat(bytes, file);
-  if (!format) {
-    throw InputError(
-        file, "", "is no kind of groom that is read",
-        "give strands as .hair, .abc, .usda, .tfx or .ply; strips, cards and tubes are read by hairmesh-convert");
-  }
+  if (!format) refuseNoHair(file, true);
   if (hints) readWorldMark(bytes, *hints);
   switch (*format) {
     case GroomFormat::kHair:

@@ -11,7 +11,7 @@ void checkGroomSize(const std::string& file, const std::string& place, std::size
   const double share = static_cast<double>(kMaxGroomPoints) / static_cast<double>(std::max(points, strands));
   const auto fit = static_cast<std::size_t>(share * static_cast<double>(strands));
   throw InputError(file, place,
-                   "holds " + std::to_string(strands) + " strands of " + std::to_string(points) + " points; " +
+                   "holds " + std::to_string(strands) + " strands and " + std::to_string(points) + " points in all; " +
                        std::to_string(fit) + " such strands fit (" + std::to_string(kMaxGroomPoints) + " points)",
                    "export fewer strands or fewer points a strand");
 }
