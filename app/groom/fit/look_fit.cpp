@@ -10,6 +10,8 @@
 #include <map>
 #include <numbers>
 
+#include "app/groom/fit/clump_fit.h"
+
 namespace app {
 namespace {
 
@@ -26,9 +28,10 @@ constexpr double kClearCurl = 0.5;        // of a strand's wander that one rotat
 // The share of length_variation by which a strand ends early, in the mean: 0.4 u^2 + 0.25 u + 0.2 u of random u, and
 // 0.15 of the squared distance from a clump's middle (shaders/common/strand.glsl; 0.48 measured).
 constexpr double kMeanEarly = 0.4 / 3 + 0.25 / 2 + 0.2 / 2 + 0.15 * 0.48;
-constexpr std::size_t kMinColumnStrands = 8, kMinColumnPairs = 20, kMinPairs = 30;
+constexpr std::size_t kMinColumnStrands = 8, kMinColumnPairs = 40;
 constexpr double kOwn = 0.7;  // of a strand's frizz that the nearest neighbour does not share, where it is its own
 constexpr double kOtherFrizz = 0.0004, kOtherClump = 0.25;  // m, 0..1: less is no difference between places
+constexpr double kLowClump = 0.3;                           // of what most places have: less varies by chance
 constexpr double kMinWidthShare = 0.05;                     // of what most strands have: thinner ones are not seen
 // Root mean square of frizz and offset over a strand, in their own amplitudes: of grow(t) = t (1.6 - 0.6 t), two sines,
 // and a disc (shaders/common/strand.glsl).
@@ -36,8 +39,6 @@ constexpr double kFrizzSpread = 0.667, kOffsetSpread = 0.31;
 constexpr float kNearFit = 0.008f;     // m, of strands that share what the hair mesh misses
 constexpr double kMaxWander = 0.005;   // m; what strays farther is held by no hair mesh, and drawn as noise by any
 constexpr std::size_t kMaxShared = 6;  // the nearest of so many
-constexpr float kNearRoots = 0.004f;   // m, of strands whose distance tells of clumps
-constexpr double kClumpClosed = 0.55;  // share of the length at which clumps are closed
 
 struct StrandMeasure {
   int face = 0;
@@ -191,36 +192,6 @@ StrandCharacter summary(const std::vector<const StrandMeasure*>& of) {
   return out;
 }
 
-// How much nearer strands of neighbouring roots are to each other than the grown ones, where clumps are closed.
-struct Nearness {
-  int face = 0;
-  float ratio = 1;
-};
-
-std::vector<Nearness> measureNearness(const StrandSamples& strands, const HairFit& fit, const GrowthMap& growth) {
-  std::map<std::array<int, 3>, std::size_t> seen;
-  std::vector<Nearness> all;
-  const std::size_t at = static_cast<std::size_t>(kClumpClosed * (strands.count - 1));
-  std::vector<Vector3f> one(static_cast<std::size_t>(strands.count)), other = one;
-  for (std::size_t s = 0; s < strands.strandCount() && all.size() < kMaxLooked; ++s) {
-    const Vector3f root = strands.strand(s)[0];
-    const auto [entry, added] = seen.try_emplace(cellOf(root, kNearRoots), s);
-    if (added) continue;
-    growStrand(fit, growth, fit.strands[s], one);
-    growStrand(fit, growth, fit.strands[entry->second], other);
-    const float grown = (one[at] - other[at]).norm();
-    if (grown > 1e-5f)
-      all.push_back(
-          {fit.strands[s].root.face, (strands.strand(s)[at] - strands.strand(entry->second)[at]).norm() / grown});
-    entry->second = s;
-  }
-  return all;
-}
-
-double clumpOf(const std::vector<float>& ratios) {
-  return std::clamp(1 - quantile(ratios, 0.5), 0.0, 1.0);
-}
-
 // One list a column of those whose bundle it is a corner of.
 template <class Entry>
 std::vector<std::vector<Entry>> byColumn(const std::vector<Entry>& entries, const sim::HairMeshShape& shape,
@@ -252,22 +223,26 @@ bool fillGaps(const sim::HairMeshShape& shape, std::vector<double>& values) {
   return any;
 }
 
-// Whether values differ by more than `least` and two fifths from a seventh of the places or more to as many others;
+// Whether values differ by more than `least` and by 1 - `share` from a seventh of the places or more to as many others;
 // `most`: what the others have. Fewer may be what the hair mesh misses.
-bool differ(const std::vector<double>& values, double least, double& most) {
+bool differ(const std::vector<double>& values, double least, double& most, double share) {
   const std::vector<float> sorted(values.begin(), values.end());
   const double low = quantile(sorted, 0.14);
   most = quantile(sorted, 0.86);
-  return most - low > least && low < 0.6 * most;
+  return most - low > least && low < share * most;
 }
 
 double shareOf(double value, double most) {
   return std::round(1e3 * std::min(1.0, value / most)) / 1e3;
 }
 
+double closingOf(const std::vector<float>& ratios) {
+  return std::clamp(1 - quantile(ratios, 0.5), 0.0, 1.0);
+}
+
 // Where clumps, curls, frizz or widths differ from place to place, `look.all` becomes what most places do not exceed.
-void fitPlaces(const std::vector<StrandMeasure>& measures, const std::vector<Nearness>& nearness,
-               const sim::HairMeshShape& shape, LookFit& look) {
+void fitPlaces(const std::vector<StrandMeasure>& measures, const ClumpFit& clumps, const sim::HairMeshShape& shape,
+               LookFit& look) {
   std::vector<double> clump, curl, frizz, width;
   std::vector<const StrandMeasure*> all;
   for (const StrandMeasure& measure : measures) all.push_back(&measure);
@@ -283,16 +258,20 @@ void fitPlaces(const std::vector<StrandMeasure>& measures, const std::vector<Nea
     curl.push_back(enough ? summary(of).curl_radius : -1);
     frizz.push_back(own.size() >= kMinColumnStrands ? quantile(own, 0.5) / kFrizzSpread : -1);
   }
-  for (const std::vector<Nearness>& of : byColumn(nearness, shape, [](const Nearness& one) { return one.face; })) {
-    std::vector<float> ratios;
-    for (const Nearness& one : of) ratios.push_back(one.ratio);
-    clump.push_back(ratios.size() >= kMinColumnPairs ? clumpOf(ratios) : -1);
+  std::vector<float> ratios;
+  for (const ClumpPair& pair : clumps.pairs) ratios.push_back(pair.ratio);
+  const double usual_closing = closingOf(ratios);
+  for (const auto& of : byColumn(clumps.pairs, shape, [](const ClumpPair& one) { return one.face; })) {
+    ratios.clear();
+    for (const ClumpPair& pair : of) ratios.push_back(pair.ratio);
+    clump.push_back(ratios.size() >= kMinColumnPairs ? closingOf(ratios) : -1);
   }
   look.columns.assign(around.size(), {});
   bool any = false;
-  const auto take = [&](std::vector<double>& values, double least, double& of_all, double ColumnShare::*share) {
+  const auto take = [&](std::vector<double>& values, double least, double& of_all, double ColumnShare::*share,
+                        double low = 0.6) {
     double most = 0;
-    if (!fillGaps(shape, values) || !differ(values, least, most)) return false;
+    if (!fillGaps(shape, values) || !differ(values, least, most, low)) return false;
     of_all = most;
     for (std::size_t c = 0; c < values.size(); ++c) look.columns[c].*share = shareOf(values[c], most);
     return any = true;
@@ -305,7 +284,9 @@ void fitPlaces(const std::vector<StrandMeasure>& measures, const std::vector<Nea
     look.all.curl_turns = there.curl_turns, look.all.curl_pitch = there.curl_pitch;
   }
   take(frizz, kOtherFrizz, look.all.frizz, &ColumnShare::frizz);
-  take(clump, kOtherClump, look.all.clump, &ColumnShare::clump);
+  double closing = 0;
+  if (take(clump, kOtherClump, closing, &ColumnShare::clump, kLowClump) && usual_closing > 0)
+    look.all.clump = std::min(1.0, clumps.clump * closing / usual_closing);
   double usual = 0;
   take(width, 0, usual, &ColumnShare::width);
   for (ColumnShare& column : look.columns) column.width = std::max(column.width, kMinWidthShare);
@@ -372,15 +353,15 @@ std::vector<StrandMeasure> measureStrands(const Groom& groom, double scale, cons
 LookFit fitLook(const Groom& groom, double scale, const StrandSamples& strands, const HairFit& fit) {
   const GrowthMap growth(fit.shape);
   const std::vector<StrandMeasure> measures = measureStrands(groom, scale, strands, fit, growth);
-  const std::vector<Nearness> nearness = measureNearness(strands, fit, growth);
+  const ClumpFit clumps = fitClumps(strands, fit, growth);
   LookFit look;
   std::vector<const StrandMeasure*> all;
   for (const StrandMeasure& measure : measures) all.push_back(&measure);
   look.all = summary(all);
-  std::vector<float> ratios;
-  for (const Nearness& one : nearness) ratios.push_back(one.ratio);
-  if (ratios.size() >= kMinPairs) look.all.clump = clumpOf(ratios);
-  fitPlaces(measures, nearness, fit.shape, look);
+  look.all.clump = clumps.clump;
+  look.all.clump_size = clumps.size;
+  look.all.lock = clumps.lock;
+  fitPlaces(measures, clumps, fit.shape, look);
   measureWidths(groom, scale, look);
   return look;
 }
@@ -392,8 +373,10 @@ void takeLook(const LookFit& fit, render::HairLook& look) {
   look.frizz = static_cast<float>(std::min(fit.all.frizz, 0.01));
   look.offset = static_cast<float>(std::min(fit.all.offset, 0.02));
   look.clump = static_cast<float>(fit.all.clump);
+  look.lock = static_cast<float>(fit.all.lock);
+  if (fit.all.clump + fit.all.lock > 0) look.clump_size = static_cast<float>(fit.all.clump_size);
   // What the groom has in its strands' places is not added once more.
-  look.lock = look.wisp = look.drift = look.root_spread = look.hairline = look.baby_hairs = look.flyaways = 0;
+  look.wisp = look.drift = look.root_spread = look.hairline = look.baby_hairs = look.flyaways = 0;
   if (fit.taper >= 0) look.taper = static_cast<float>(fit.taper);
 }
 
@@ -402,6 +385,7 @@ namespace {
 constexpr std::array kTaken{&render::HairLook::length_variation,
                             &render::HairLook::offset,
                             &render::HairLook::clump,
+                            &render::HairLook::clump_size,
                             &render::HairLook::curl_radius,
                             &render::HairLook::curl_pitch,
                             &render::HairLook::frizz,

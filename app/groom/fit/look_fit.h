@@ -16,14 +16,15 @@ struct StrandCharacter {
   double curl_radius = 0;                     // m; 0: no curls that the hair mesh does not follow itself
   double curl_turns = 0, curl_pitch = 0.035;  // over a strand; m a turn, along the hair without its curls
   double frizz = 0, offset = 0;               // m, as render::HairLook
-  double clump = 0;                           // 0..1
+  double clump = 0, lock = 0;                 // 0..1
+  double clump_size = 0.012;                  // m, as render::HairLook
 };
 
 struct LookFit {
   StrandCharacter all;
   // One a column, of `all`, where strands differ from place to place; empty: they are alike everywhere.
   std::vector<ColumnShare> columns;
-  double taper = -1, radius = -1;        // as render::HairLook; negative: the groom has no widths
+  double taper = -1, radius = -1;  // as render::HairLook; negative: the groom has no widths
 };
 
 // `scale`: metres in a unit of the groom, as the samples were made with.
