@@ -32,7 +32,7 @@
 namespace {
 
 struct Arguments {
-  std::string in, out, preset, scalp, mends, figure = "idle_turns.bvh";
+  std::string in, out, preset, scalp, mends, misfits, figure = "idle_turns.bvh";
   double unit = 0;
   bool no_mend = false, up_given = false;
   std::vector<std::string> given;  // names of the options
@@ -79,6 +79,10 @@ void addCurveOptions(CLI::App& parser, Arguments& arguments) {
   parser.add_option("--mends", arguments.mends, app::kMendsHelp);
   parser.add_flag("--no-mend", arguments.no_mend,
                   "The hair is taken as it is, but for the unit and the axis that is up");
+  parser
+      .add_option("--misfits", arguments.misfits,
+                  "List the strands that do not fit: a number and its offset in mm a line; of curves")
+      ->option_text("FILE.txt");
   parser.add_option("--figure", arguments.figure,
                     "Motion or model whose head the hair is held against (a mannequin's)");
   parser.add_flag("--reverse-strands", arguments.curves.reverse, "Strands are given from tip to root");
@@ -148,11 +152,15 @@ Arguments parse(int argc, char** argv, CLI::App& parser) {
 std::string presetText(const app::LookFit& fit, const std::string& name) {
   render::HairLook look;
   app::takeLook(fit, look);
-  nlohmann::ordered_json hair{
-      {"length_variation", look.length_variation}, {"offset", look.offset},         {"clump", look.clump},
-      {"curl_radius", look.curl_radius},           {"curl_pitch", look.curl_pitch}, {"frizz", look.frizz}};
-  for (const char* none : {"lock", "wisp", "drift", "root_spread", "hairline", "baby_hairs", "flyaways"})
-    hair[none] = 0;
+  nlohmann::ordered_json hair{{"length_variation", look.length_variation},
+                              {"offset", look.offset},
+                              {"clump", look.clump},
+                              {"clump_size", look.clump_size},
+                              {"lock", look.lock},
+                              {"curl_radius", look.curl_radius},
+                              {"curl_pitch", look.curl_pitch},
+                              {"frizz", look.frizz}};
+  for (const char* none : {"wisp", "drift", "root_spread", "hairline", "baby_hairs", "flyaways"}) hair[none] = 0;
   if (fit.taper >= 0) hair["taper"] = look.taper;
   return nlohmann::ordered_json{{"name", name}, {"hair", hair}}.dump(2) + "\n";
 }
@@ -174,9 +182,10 @@ std::string mend(const Arguments& arguments, app::GroomHints& hints, app::Groom&
   return app::mendText(report);
 }
 
-int convertCurves(const std::string& bytes, const Arguments& arguments) {
+int convertCurves(std::string bytes, const Arguments& arguments) {
   app::GroomHints hints;
   app::Groom groom = app::readGroom(bytes, arguments.in, &hints);
+  std::string().swap(bytes);  // as large as the groom
   app::ConvertOptions options = arguments.curves;
   if (arguments.no_mend) {
     app::mendGroom({.axes = app::toldAxes(hints)}, nullptr, groom);
@@ -186,6 +195,7 @@ int convertCurves(const std::string& bytes, const Arguments& arguments) {
   const app::Conversion conversion = app::convertGroom(groom, hints, options, arguments.in);
   app::writeFile(arguments.out, app::writeHairMesh(conversion.shape, conversion.look.columns));
   app::writeFile(arguments.preset, presetText(conversion.look, std::filesystem::path(arguments.out).stem().string()));
+  if (!arguments.misfits.empty()) app::writeFile(arguments.misfits, app::misfitList(conversion));
   std::cout << app::conversionReport(conversion) << "written       " << arguments.out << " and " << arguments.preset
             << "; open with hairmesh --hair " << arguments.out << " --preset " << arguments.preset << "\n";
   return app::conversionWarning(conversion).empty() ? app::kExitFine : app::kExitFault;
@@ -228,6 +238,11 @@ void checkOutput(const Arguments& arguments) {
     if (std::filesystem::equivalent(read, arguments.out, ignored))
       throw app::InputError(arguments.out, "", "is what is read as well", "choose another name");
   app::checkWritable(arguments.out);
+  if (arguments.misfits.empty()) return;
+  for (const std::string& other : {arguments.in, arguments.out, arguments.preset})
+    if (arguments.misfits == other || std::filesystem::equivalent(arguments.misfits, other, ignored))
+      throw app::InputError(arguments.misfits, "", "is read or written as well", "choose another name for --misfits");
+  app::checkWritable(arguments.misfits);
 }
 
 // Throws UsageError for an option of the other kind of groom.
@@ -239,14 +254,14 @@ void refuseIdle(std::initializer_list<std::string_view> idle, const char* kind, 
 
 int run(const Arguments& arguments) {
   checkOutput(arguments);
-  const std::string bytes = app::readText(arguments.in, app::kMaxGroomFile);
+  std::string bytes = app::readText(arguments.in, app::kMaxGroomFile);
   if (app::groomFormat(bytes, arguments.in)) {
     refuseIdle(
         {"--root-edge", "--other-end", "--flip-strips", "--drop-strips", "--scalp", "--up", "--join", "--thickness"},
         "curves", arguments);
-    return convertCurves(bytes, arguments);
+    return convertCurves(std::move(bytes), arguments);
   }
-  refuseIdle({"--mends", "--reverse-strands"}, "no curves", arguments);
+  refuseIdle({"--mends", "--reverse-strands", "--misfits"}, "no curves", arguments);
   app::refuseOwnExport(bytes, arguments.in);
   if (!app::hasPolygonEnding(arguments.in)) {
     app::refuseUtf16(bytes, arguments.in);

@@ -16,10 +16,12 @@ using Eigen::Vector3f;
 
 constexpr int kSamples = 25;                          // points a strand
 constexpr std::size_t kSilhouetteStrands = 10000;     // that silhouettes are drawn of
-constexpr double kMisfit = 0.03;                      // of the hair's length
+constexpr double kMisfit = 0.03, kAimedMean = 0.01;   // of the hair's length
 constexpr double kMaxMisfits = 0.5, kFarMean = 0.05;  // of the strands, and in the mean of their length: no conversion
 constexpr float kTogether = 0.012f;                   // m, between roots of strands that are told of as one
 constexpr std::size_t kMaxMisfitLines = 6;            // groups that are told of
+constexpr std::size_t kMaxRuns = 4;                   // of a group's numbers that are told
+constexpr std::size_t kMaxMeasured = 200000;          // strands
 constexpr double kCrossing = 0.35;                    // rad-like, of strands that root together
 
 Groom reversed(Groom groom) {
@@ -75,24 +77,27 @@ bool goApart(const StrandSamples& samples, const std::vector<std::size_t>& of) {
   return count > 0 && sum / count > kCrossing;
 }
 
+bool doesNotFit(const FitError& error, std::size_t s) {
+  return error.of_strand[s] > kMisfit * error.strand_length;
+}
+
 std::vector<Misfit> findMisfits(const StrandSamples& samples, const HairFit& fit) {
   std::map<GridCell, std::vector<std::size_t>> cells;
   for (std::size_t s = 0; s < samples.strandCount(); ++s) {
-    if (fit.error.of_strand[s] > kMisfit * fit.error.strand_length) cells[cellOf(samples.strand(s)[0])].push_back(s);
+    if (doesNotFit(fit.error, s)) cells[cellOf(samples.strand(s)[0])].push_back(s);
   }
   std::vector<Misfit> all;
   while (!cells.empty()) {
     const std::vector<std::size_t> strands = gather(cells.begin()->first, cells);
     Misfit& misfit = all.emplace_back();
     misfit.strands = static_cast<int>(strands.size());
-    misfit.first = misfit.last = samples.source[strands.front()];
     for (const std::size_t s : strands) {
-      misfit.first = std::min(misfit.first, samples.source[s]);
-      misfit.last = std::max(misfit.last, samples.source[s]);
+      misfit.numbers.push_back(samples.source[s]);
       misfit.root += samples.strand(s)[0] / static_cast<float>(strands.size());
       misfit.mean += fit.error.of_strand[s] / static_cast<double>(strands.size());
       misfit.largest = std::max(misfit.largest, static_cast<double>(fit.error.of_strand[s]));
     }
+    std::ranges::sort(misfit.numbers);
     misfit.crossing = goApart(samples, strands);
   }
   std::sort(all.begin(), all.end(),
@@ -100,12 +105,29 @@ std::vector<Misfit> findMisfits(const StrandSamples& samples, const HairFit& fit
   return all;
 }
 
-std::string misfitLine(const Misfit& misfit, const FitError& error) {
+// Ascending numbers, which follow each other at `step`, as runs: "3-17, 20, 25-30 and 12 more".
+std::string runsOf(const std::vector<int>& numbers, int step) {
+  std::string text;
+  std::size_t at = 0;
+  for (std::size_t run = 0; run < kMaxRuns && at < numbers.size(); ++run) {
+    std::size_t end = at;
+    while (end + 1 < numbers.size() && numbers[end + 1] <= numbers[end] + step) ++end;
+    text += (run > 0 ? ", " : "") + std::to_string(numbers[at]);
+    if (end > at) text += "-" + std::to_string(numbers[end]);
+    at = end + 1;
+  }
+  if (at < numbers.size()) text += " and " + std::to_string(numbers.size() - at) + " more";
+  return text;
+}
+
+std::string misfitLine(const Misfit& misfit, const Conversion& conversion) {
+  const FitError& error = conversion.fit.error;
   return reportLine(
-      "does not fit  %d strand%s of number %d to %d, rooted about (%.3f, %.3f, %.3f) m: %.0f mm off, up to %.0f mm "
+      "does not fit  %d strand%s, number%s %s, rooted about (%.3f, %.3f, %.3f) m: %.0f mm off, up to %.0f mm "
       "(%.0f %% of the length)%s",
-      misfit.strands, misfit.strands == 1 ? "" : "s", misfit.first, misfit.last, misfit.root.x(), misfit.root.y(),
-      misfit.root.z(), 1e3 * misfit.mean, 1e3 * misfit.largest, 100 * misfit.largest / error.strand_length,
+      misfit.strands, misfit.strands == 1 ? "" : "s", misfit.strands == 1 ? "" : "s",
+      runsOf(misfit.numbers, conversion.step).c_str(), misfit.root.x(), misfit.root.y(), misfit.root.z(),
+      1e3 * misfit.mean, 1e3 * misfit.largest, 100 * misfit.largest / error.strand_length,
       misfit.crossing ? "; strands of the same roots go other ways" : "");
 }
 
@@ -163,6 +185,10 @@ std::string characterLine(const LookFit& look) {
       100 * all.length_variation, 1e3 * all.offset, 1e3 * all.frizz, lessElsewhere(look, &ColumnShare::frizz).c_str(),
       100 * all.clump, lessElsewhere(look, &ColumnShare::clump).c_str());
   text += part;
+  if (all.clump + all.lock > 0) {
+    std::snprintf(part, sizeof part, ", %.0f mm apart, locks by %.0f %%", 1e3 * all.clump_size, 100 * all.lock);
+    text += part;
+  }
   if (look.taper >= 0) {
     std::snprintf(part, sizeof part, ", %.3g mm wide at the roots (the look's strand_radius stays), tips %.2f of it",
                   2e3 * look.radius, look.taper);
@@ -189,9 +215,12 @@ Conversion convertGroom(const Groom& given, const GroomHints& hints, const Conve
     std::snprintf(text, sizeof text, "units of %g m", options.file_unit > 0 ? options.file_unit : said);
     out.unit = text;
   }
-  const StrandSamples samples = sampleStrands(groom, out.scale, kSamples);
-  out.strands = static_cast<int>(samples.strandCount());
+  const std::size_t step = 1 + (std::max<std::size_t>(groom.strandCount(), 1) - 1) / kMaxMeasured;
+  const StrandSamples samples = sampleStrands(groom, out.scale, kSamples, step);
   out.left_out = samples.left_out;
+  out.strands = static_cast<int>(groom.strandCount()) - out.left_out;
+  out.measured = static_cast<int>(samples.strandCount());
+  out.step = static_cast<int>(step);
   try {
     out.fit = fitGroom(samples, options.fit);
     out.shape = out.fit.shape;
@@ -202,8 +231,16 @@ Conversion convertGroom(const Groom& given, const GroomHints& hints, const Conve
   }
   out.look = fitLook(groom, out.scale, samples, out.fit);
   out.misfits = findMisfits(samples, out.fit);
+  for (std::size_t s = 0; s < samples.strandCount(); ++s)
+    if (doesNotFit(out.fit.error, s)) out.astray.push_back({samples.source[s], out.fit.error.of_strand[s]});
   if (options.silhouettes) compareSilhouettes(groom, samples, out);
   return out;
+}
+
+std::string misfitList(const Conversion& conversion) {
+  std::string text;
+  for (const StrayStrand& strand : conversion.astray) text += reportLine("%d %.1f", strand.number, 1e3 * strand.off);
+  return text;
 }
 
 int misfitCount(const Conversion& conversion) {
@@ -215,8 +252,8 @@ int misfitCount(const Conversion& conversion) {
 std::string conversionWarning(const Conversion& conversion) {
   const int off = misfitCount(conversion);
   const FitError& error = conversion.fit.error;
-  if (off <= kMaxMisfits * conversion.strands || error.mean <= kFarMean * error.strand_length) return "";
-  return "most of the groom is lost: " + std::to_string(off) + " of " + std::to_string(conversion.strands) +
+  if (off <= kMaxMisfits * conversion.measured || error.mean <= kFarMean * error.strand_length) return "";
+  return "most of the groom is lost: " + std::to_string(off) + " of " + std::to_string(conversion.measured) +
          " strands do not fit the hair mesh, all are " +
          std::to_string(std::lround(100 * error.mean / error.strand_length)) + " % of their length off in the mean";
 }
@@ -231,6 +268,9 @@ std::string conversionReport(const Conversion& conversion) {
   if (conversion.left_out > 0)
     text += reportLine("left out      %d strands: fewer than two points, not finite or shorter than 1 mm",
                        conversion.left_out);
+  if (conversion.step > 1)
+    text += reportLine("measured      on %d of them, each %dth: the hair mesh, distances and what does not fit",
+                       conversion.measured, conversion.step);
   text += reportLine("hair mesh     %d vertices in %d columns of %zu layers; %zu root faces in %d region%s",
                      fit.shape.vertexCount(), fit.shape.columnCount(), fit.knots.size(), fit.shape.root_faces.size(),
                      fit.regions, fit.regions == 1 ? "" : "s");
@@ -241,12 +281,16 @@ std::string conversionReport(const Conversion& conversion) {
       "mm",
       100 * error.mean / error.strand_length, 1e3 * error.mean, 100 * error.share95 / error.strand_length,
       1e3 * error.share95, 1e3 * error.largest, 1e3 * error.root_mean);
+  const bool mean_met = error.mean <= kAimedMean * error.strand_length,
+             share_met = error.share95 <= kMisfit * error.strand_length;
+  text += reportLine("aims          mean within 1 %%: %s; 95 %% within 3 %%: %s", mean_met ? "met" : "not met",
+                     share_met ? "met" : "not met");
   if (conversion.silhouette >= 0)
     text += reportLine("silhouette    overlaps by at least %.3f from six sides, by %.3f with strands dealt out anew",
                        conversion.silhouette, conversion.silhouette_drawn);
   text += characterLine(conversion.look);
   for (std::size_t k = 0; k < std::min(kMaxMisfitLines, conversion.misfits.size()); ++k)
-    text += misfitLine(conversion.misfits[k], error);
+    text += misfitLine(conversion.misfits[k], conversion);
   if (conversion.misfits.size() > kMaxMisfitLines) {
     int rest = 0;
     for (std::size_t k = kMaxMisfitLines; k < conversion.misfits.size(); ++k) rest += conversion.misfits[k].strands;

@@ -21,10 +21,16 @@ struct ConvertOptions {
 // Neighbouring strands that one hair mesh cannot hold within 3 % of the hair's length.
 struct Misfit {
   int strands = 0;
-  int first = 0, last = 0;                         // lowest and highest number in the groom
+  std::vector<int> numbers;                        // in the groom, ascending
   Eigen::Vector3f root = Eigen::Vector3f::Zero();  // m, their mean root, the file's axes
   double mean = 0, largest = 0;                    // m, of the strands' mean distances
   bool crossing = false;                           // strands of the same roots go other ways
+};
+
+// A strand by its number in the groom.
+struct StrayStrand {
+  int number = 0;
+  float off = 0;  // m, mean distance
 };
 
 struct Conversion {
@@ -34,22 +40,27 @@ struct Conversion {
   std::string unit;  // in words
   double scale = 1;  // metres in a unit
   int strands = 0, left_out = 0;
+  int measured = 0, step = 1;  // of the strands, every step-th: on these the mesh is fitted and distances are measured
   // Smallest overlaps of six sides; negative: not compared. Of the strands that grow from the given roots to the given
   // lengths, and of as many that are dealt out over the hair mesh as when it is drawn.
   double silhouette = -1, silhouette_drawn = -1;
   std::vector<Misfit> misfits;
+  std::vector<StrayStrand> astray;  // those of all misfits, by their numbers
 };
 
 // Throws InputError naming `file` where no hair mesh can be made of it.
 Conversion convertGroom(const Groom& groom, const GroomHints& hints, const ConvertOptions& options,
                         const std::string& file);
 
-// Of the strands, how many do not fit.
+// Of the strands that are measured, how many do not fit.
 int misfitCount(const Conversion& conversion);
 
 // One sentence where more than half of the strands do not fit and all are more than 5 % of their length off in the
 // mean; else empty.
 std::string conversionWarning(const Conversion& conversion);
+
+// Each strand that does not fit with its offset in mm, one a line.
+std::string misfitList(const Conversion& conversion);
 
 // Vertices, distances, character of the strands, and what does not fit: one fact a line.
 std::string conversionReport(const Conversion& conversion);

@@ -42,10 +42,10 @@ void resample(std::span<const Vector3f> line, std::span<Vector3f> even) {
   even.back() = line.back();
 }
 
-StrandSamples sampleStrands(const Groom& groom, double scale, int count) {
+StrandSamples sampleStrands(const Groom& groom, double scale, int count, std::size_t step) {
   StrandSamples out;
   out.count = count;
-  out.at.reserve(groom.strandCount() * static_cast<std::size_t>(count));
+  out.at.reserve((groom.strandCount() / step + 1) * static_cast<std::size_t>(count));
   std::vector<Vector3f> line, fine(static_cast<std::size_t>((count - 1) * kFine + 1));
   const int last = static_cast<int>(fine.size()) - 1;
   for (std::size_t s = 0; s < groom.strandCount(); ++s) {
@@ -60,6 +60,7 @@ StrandSamples sampleStrands(const Groom& groom, double scale, int count) {
       ++out.left_out;
       continue;
     }
+    if (s % step != 0) continue;
     resample(line, fine);
     for (int k = 0; k < count; ++k) {
       const int middle = k * kFine, reach = std::min({kFine, middle, last - middle});

@@ -16,7 +16,7 @@ struct StrandSamples {
   std::vector<Eigen::Vector3f> at;  // m, strands x count
   std::vector<float> length;        // m, one a strand
   std::vector<int> source;          // the strand's number in the groom
-  int left_out = 0;                 // of fewer than two points, not finite, or shorter than 1 mm
+  int left_out = 0;                 // of all: of fewer than two points, not finite, or shorter than 1 mm
 
   std::size_t strandCount() const { return length.size(); }
   std::span<const Eigen::Vector3f> strand(std::size_t s) const {
@@ -25,8 +25,8 @@ struct StrandSamples {
 };
 
 // `scale`: metres in a unit of the groom. Between its ends a sample is the mean of the strand over the steps beside it,
-// so that curls narrower than that do not alias.
-StrandSamples sampleStrands(const Groom& groom, double scale, int count);
+// so that curls narrower than that do not alias. Of all strands every `step`th.
+StrandSamples sampleStrands(const Groom& groom, double scale, int count, std::size_t step = 1);
 
 // The points of a polyline at `count` even steps of its length.
 void resample(std::span<const Eigen::Vector3f> line, std::span<Eigen::Vector3f> even);

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <sstream>
 
 #include "app/files/errors.h"
 #include "app/files/hair_file.h"
@@ -129,6 +130,23 @@ TEST(Conversion, StrandsComeBackAsLongAsTheyWere) {
   }
 }
 
+// The program's own clumps come back, of uneven strands, over what the hair mesh misses.
+TEST(Conversion, FindsClumpsAndTheirSize) {
+  ConvertOptions options;
+  options.fit.vertices = 400;
+  const sim::HairMeshShape head = convertGroom(groom_kinds::parted(kStrands, 0.02f, 0.22f), {}, options, "head").shape;
+  render::HairLook look;
+  look.lock = look.wisp = look.drift = look.root_spread = look.hairline = look.baby_hairs = look.flyaways = 0;
+  for (const auto& [clump, size] : {std::pair(0.1f, 0.012f), {0.5f, 0.012f}, {0.9f, 0.006f}}) {
+    look.clump = clump;
+    look.clump_size = size;
+    const Conversion conversion = convertGroom(growGroom(head, look, 6000, 33), {}, options, "clumps");
+    // Hair that hardly closes is hard to tell from its own wander.
+    EXPECT_NEAR(conversion.look.all.clump, clump, clump > 0.4f ? 0.12 : 0.22) << conversionReport(conversion);
+    if (clump > 0.4f) EXPECT_NEAR(conversion.look.all.clump_size / size, 1, 0.3) << conversionReport(conversion);
+  }
+}
+
 TEST(Conversion, SaysWhichStrandsGoAnotherWay) {
   ConvertOptions options;
   options.fit.vertices = 400;
@@ -136,6 +154,31 @@ TEST(Conversion, SaysWhichStrandsGoAnotherWay) {
   ASSERT_FALSE(conversion.misfits.empty());
   EXPECT_TRUE(std::ranges::any_of(conversion.misfits, [](const Misfit& misfit) { return misfit.crossing; }));
   EXPECT_NE(conversionReport(conversion).find("strands of the same roots go other ways"), std::string::npos);
+  // Each of them is listed once, with its offset.
+  std::istringstream list(misfitList(conversion));
+  int listed = 0, number = 0, last = -1;
+  double off = 0;
+  for (; list >> number >> off; ++listed, last = number) {
+    EXPECT_GT(number, last);
+    EXPECT_GE(off, 29 * conversion.fit.error.strand_length) << "mm: 3 %, rounded";
+  }
+  EXPECT_TRUE(list.eof());
+  EXPECT_EQ(listed, misfitCount(conversion));
+}
+
+TEST(Conversion, NamesRunsOfStrandsThatDoNotFit) {
+  ConvertOptions options;
+  options.fit.vertices = 400;
+  Conversion conversion = convertGroom(groom_kinds::cropped(200), {}, options, "cropped");
+  conversion.misfits.assign(1, {});
+  conversion.misfits[0].numbers = {3, 4, 5, 9, 12, 13, 20, 30, 31};
+  conversion.misfits[0].strands = 9;
+  EXPECT_NE(conversionReport(conversion).find("9 strands, numbers 3-5, 9, 12-13, 20 and 2 more, rooted"),
+            std::string::npos);
+  conversion.fit.error.mean = 0.009 * conversion.fit.error.strand_length;
+  EXPECT_NE(conversionReport(conversion).find("aims          mean within 1 %: met"), std::string::npos);
+  conversion.fit.error.mean = 0.011 * conversion.fit.error.strand_length;
+  EXPECT_NE(conversionReport(conversion).find("mean within 1 %: not met"), std::string::npos);
 }
 
 TEST(Conversion, ReadsUnitsFromTheSpreadOfTheRoots) {
