@@ -122,8 +122,7 @@ void addSceneOptions(CLI::App& parser, Options& options, Unchecked& unchecked) {
   OptionGroup group{parser, "What is shown"};
   group
       .value("--style", options.style, "NAME",
-             "Hair style (short, shoulder, long, bob, pixie, shaved) or hairdo, with look and ties (bob_fringe, curly, "
-             "long_straight, long_wavy, plaits, pony_tail, shoulder_layers)")
+             "Hair style: short, shoulder, long, bob, pixie or shaved; or a hairdo, with its look and ties (curly ...)")
       ->check(oneOf(styleChoices()));
   group.value("--resolution", options.resolution, "NAME", "Hair mesh resolution: low, medium, high or ultra")
       ->check(oneOf({"low", "medium", "high", "ultra"}));

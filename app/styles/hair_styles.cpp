@@ -75,7 +75,8 @@ sim::HairMeshShape shavedTo(double length, int layers, const sim::HairMeshShape&
 // Hair that fell around a post comes out of the body, where its prisms allow that.
 void leaveBody(const BodyDistance& body, double fatness, sim::HairMeshShape& shape) {
   sim::HairMeshShape outside = shape;
-  if (untangle(body, fatness, kGap, outside) > kMinFatness) shape = std::move(outside);
+  for (int round = 0; round < 12; ++round)
+    if (untangle(body, fatness, kGap, outside) > kMinFatness) shape = outside;
 }
 
 }  // namespace
