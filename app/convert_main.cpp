@@ -166,7 +166,7 @@ std::string presetText(const app::LookFit& fit, const std::string& name) {
 }
 
 app::Character figureOf(const Arguments& arguments) {
-  return app::loadCharacter(app::findFile(arguments.figure, "", "clips"));
+  return app::loadCharacter(app::foundFile(arguments.figure, "", "clips"));
 }
 
 // Does what the inspector is certain of, as metres, y up, root first; returns what it says.

@@ -150,7 +150,7 @@ int tell(const Asked& asked, const app::GroomInspection& inspection) {
 }
 
 app::Character figureOf(const Asked& asked) {
-  return app::loadCharacter(app::findFile(asked.figure, "", "clips"));
+  return app::loadCharacter(app::foundFile(asked.figure, "", "clips"));
 }
 
 // Of a file that holds no curves.

@@ -112,13 +112,13 @@ void overrideCharacter(const Options& options, CharacterSpec& spec) {
   }
   if (!options.resolution.empty()) spec.resolution = *parseResolution(options.resolution);
   if (!options.hair.empty()) {
-    chooseHair(findFile(options.hair, "", "hair"), spec);
+    chooseHair(foundFile(options.hair, "", "hair"), spec);
     spec.reverse_faces = options.reverse_faces;
     spec.mends = options.mends;
   }
   if (!options.fit.empty()) spec.fit = options.fit == "on";
   if (!options.motion.empty()) {
-    spec.motion = findFile(options.motion, "", "clips");
+    spec.motion = foundFile(options.motion, "", "clips");
     spec.clip.clear();
     spec.parts.clear();
     spec.body.clear();

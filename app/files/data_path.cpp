@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <string_view>
 
+#include "app/files/errors.h"
 #include "sim/field_text.h"
 
 namespace app {
@@ -33,6 +34,13 @@ std::string findFile(const std::string& name, const std::string& base_file, cons
     if (fs::exists(candidate, ignored)) return candidate.lexically_normal().string();
   }
   return name;
+}
+
+std::string foundFile(const std::string& name, const std::string& base_file, const std::string& kind) {
+  std::string file = findFile(name, base_file, kind);
+  std::error_code ignored;
+  if (!fs::exists(file, ignored)) throw InputError(file, "", "there is no such file", missingMend(file));
+  return file;
 }
 
 std::vector<std::string> listAssets(const std::string& kind, const std::vector<std::string>& endings) {

@@ -18,6 +18,9 @@ std::string dataPath(const std::string& relative);
 // "presets"). Returns the name as given when nothing is found, so that the reader's message shows what was asked for.
 std::string findFile(const std::string& name, const std::string& base_file, const std::string& kind);
 
+// The same of a file that must be there: throws InputError, with missingMend, where nothing is found.
+std::string foundFile(const std::string& name, const std::string& base_file, const std::string& kind);
+
 // Names of the files of assets/`kind` that end in one of `endings`, full paths, sorted.
 std::vector<std::string> listAssets(const std::string& kind, const std::vector<std::string>& endings);
 

@@ -148,10 +148,7 @@ void refuseOwnExport(std::string_view bytes, const std::string& file) {
 }
 
 void refuseNoHair(const std::string& file, bool of_tool) {
-  const std::string beginning = beginningOfGroom(file);
-  if (!beginning.empty())
-    throw InputError(file, "", "does not begin with " + beginning + ", as its name says",
-                     "write it again, or give it the ending of what it is");
+  refuseOtherBeginning(file);
   const auto [kind, use] = kindAndUse(file, of_tool);
   if (!kind.empty()) throw InputError(file, "", kind + ", no hair", use);
   throw InputError(

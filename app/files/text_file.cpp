@@ -4,7 +4,6 @@
 #include <fstream>
 #include <system_error>
 
-#include "app/files/data_path.h"
 #include "app/files/errors.h"
 
 namespace app {
@@ -14,7 +13,7 @@ std::string readText(const std::string& file, std::size_t limit_bytes) {
   std::error_code error;
   const fs::file_status status = fs::status(file, error);
   if (file.empty() || !fs::exists(status)) {
-    throw InputError(file, "", "there is no such file", missingMend(file));
+    throw InputError(file, "", "there is no such file", "check the path");
   }
   if (fs::is_directory(status)) throw InputError(file, "", "this is a folder, not a file", "name a file inside it");
   // A pipe without a writer would hang the program, a device would never end.

@@ -5,7 +5,6 @@
 
 #include "app/files/errors.h"
 #include "app/files/file_ending.h"
-#include "app/files/file_kind.h"
 #include "app/files/text_file.h"
 #include "app/groom/formats/alembic_file.h"
 #include "app/groom/formats/groom_bytes.h"
@@ -66,9 +65,19 @@ bool hasGroomEnding(const std::string& file) {
   return !beginningOfGroom(file).empty();
 }
 
+void refuseOtherBeginning(const std::string& file) {
+  const std::string beginning = beginningOfGroom(file);
+  if (!beginning.empty())
+    throw InputError(file, "", "does not begin with " + beginning + ", as its name says",
+                     "write it again, or give it the ending of what it is");
+}
+
 Groom readGroom(std::string_view bytes, const std::string& file, GroomHints* hints) {
   const std::optional<GroomFormat> format = groomFormat(bytes, file);
-  if (!format) refuseNoHair(file, true);
+  if (!format) {
+    refuseOtherBeginning(file);
+    throw InputError(file, "", "is no kind of groom that is read", "give strands as .hair, .abc, .usda, .tfx or .ply");
+  }
   if (hints) readWorldMark(bytes, *hints);
   switch (*format) {
     case GroomFormat::kHair:

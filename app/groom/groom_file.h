@@ -18,6 +18,8 @@ std::optional<GroomFormat> groomFormat(std::string_view bytes, const std::string
 
 // What a groom of the name's ending begins with; empty for other endings.
 std::string beginningOfGroom(const std::string& file);
+// Throws InputError where the file's name tells a format of grooms: its bytes are of another.
+void refuseOtherBeginning(const std::string& file);
 // Whether the name ends like a groom's: .hair, .abc, .usda, .tfx, .ply and those that are refused by name.
 bool hasGroomEnding(const std::string& file);
 

@@ -89,7 +89,7 @@ void changeStyle(const Request& request, Demo& demo) {
 
 void changeHairFile(const std::string& file, Demo& demo) {
   CharacterSpec spec = selectedActor(demo).spec;
-  chooseHair(findFile(file, "", "hair"), spec);
+  chooseHair(foundFile(file, "", "hair"), spec);
   spec.mends.clear(), spec.pins.clear();
   recast(spec, true, "hair mesh " + stem(file), demo, true);
 }
@@ -137,7 +137,7 @@ void changeMap(const Request& request, Demo& demo) {
 
 void changeMotion(const Request& request, Demo& demo) {
   CharacterSpec spec = selectedActor(demo).spec;
-  spec.motion = findFile(request.text, "", "clips");
+  spec.motion = foundFile(request.text, "", "clips");
   spec.clip.clear();
   spec.parts = request.name;
   spec.body.clear();
@@ -159,7 +159,7 @@ void changeClip(const std::string& name, Demo& demo) {
 }
 
 void changeScene(const std::string& file, Demo& demo) {
-  Scene scene = loadScene(findFile(file, "", "scenes"));
+  Scene scene = loadScene(foundFile(file, "", "scenes"));
   scene.skips = demo.scene.skips;
   if (demo.loading.on) {
     const std::string title = "scene " + scene.name;

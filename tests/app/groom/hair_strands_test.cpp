@@ -96,7 +96,7 @@ TEST(HairStrands, FaultsNameFilePlaceAndMend) {
   EXPECT_EQ(
       test::lacking(faultOf(bytes), "byte 4: the header counts 4294967295 strands but only "),
       "");
-  EXPECT_EQ(test::lacking(faultOf("what is this"), "no kind of groom"), "");
+  EXPECT_EQ(test::lacking(faultOf("what is this"), "does not begin with HAIR"), "");
   EXPECT_EQ(test::lacking(faultOf(std::string("\x89HDF\r\n\x1a\n", 8)), "HDF5"), "");
   EXPECT_EQ(test::lacking(faultOf("PXR-USDC0000"), "usdcat"), "");
 }
