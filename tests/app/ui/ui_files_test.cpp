@@ -287,6 +287,7 @@ TEST_F(Panels, PathFieldsHaveAnOpenButton) {
   EXPECT_EQ(ui_.browser.what, app::BrowseFor::kMotion);
   click("file_cancel");
   EXPECT_EQ(ui_.browser.what, app::BrowseFor::kNothing);
+  ImGui::GetIO().DisplaySize = {1280, 3000};  // its row is below the fold of the usual window
   openTab(2);
   click("open ##hair_path");
   EXPECT_EQ(ui_.browser.what, app::BrowseFor::kHair);
