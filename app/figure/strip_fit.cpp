@@ -99,7 +99,6 @@ void turnSingle(const PolygonMesh& mesh, StripOptions options, bool up_given, co
   try {
     FittedStrips turned = fitEitherUp(mesh, options, up_given, file, character, true);
     if (rootedAway(turned.conversion.followed, character, turned.place).size() >= options.flipped.size()) return;
-    turned.turned = options.flipped;
     turned.conversion.turned_by_head = true;
     for (FollowedStrip& strip : turned.conversion.followed) strip.unclear = strip.unclear && !strip.turned;
     fitted = std::move(turned);
@@ -129,16 +128,13 @@ FittedStrips fitStrips(const PolygonMesh& mesh, const StripOptions& options, boo
                        const Character& character, bool mend) {
   FittedStrips fitted = fitEitherUp(mesh, options, up_given, file, character, mend);
   if (!mend || !fitted.conversion.scalp_points.empty()) return fitted;
-  if (fitted.as_made_distance <= kFarRoots) {
-    turnSingle(mesh, options, up_given, file, character, fitted);
-    return fitted;
-  }
-  if (options.root == RootEdge::kAuto) {
+  const bool far = fitted.as_made_distance > kFarRoots;
+  if (far && options.root == RootEdge::kAuto) {
     std::optional<FittedStrips> standing = fitStanding(mesh, options, up_given, file, character, fitted);
     if (standing) return std::move(*standing);
   }
   turnSingle(mesh, options, up_given, file, character, fitted);
-  if (farFromHead(fitted.conversion.mesh.shape, character))
+  if (far && farFromHead(fitted.conversion.mesh.shape, character))
     fitted.fit +=
         "; the file has no head that tells where its roots are: hairmesh-convert takes one by --scalp FILE, and the "
         "roots' ends by --root-edge lowest or --flip-strips";

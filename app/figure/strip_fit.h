@@ -17,7 +17,6 @@ struct FittedStrips {
   std::string fit;                                      // what fitHair says of their place; empty: they fit as they are
   double as_made_distance = 0;                          // m, fitHair's
   Eigen::Affine3d place = Eigen::Affine3d::Identity();  // from the strips' metres and axes to the head's
-  std::vector<int> turned;  // numbers of strips that are rooted at the other end, for that lies on the head
 };
 
 // Strips of which the end that is no root is on the scalp, as `place` brings it there, and the root is not.

@@ -82,7 +82,7 @@ struct StripInspector {
   void unit();
   void axes();
   void roots(const FittedStrips& fitted, const Character& character);
-  void ends(const FittedStrips& fitted, const Character& character);
+  void ends(const Character& character);
   void widths();
   void body();
 };
@@ -173,10 +173,11 @@ void StripInspector::roots(const FittedStrips& fitted, const Character& characte
 }
 
 // Pieces rooted at the wrong end, and those that are rooted nowhere.
-void StripInspector::ends(const FittedStrips& fitted, const Character& character) {
+void StripInspector::ends(const Character& character) {
   const std::vector<int> away = rootedAway(strips.followed, character, place);
-  std::vector<int> reversed, floating, unclear;
+  std::vector<int> turned, reversed, floating, unclear;
   for (const FollowedStrip& strip : strips.followed) {
+    if (strip.turned && strips.turned_by_head) turned.push_back(strip.number);
     const double root = std::abs(distance(middleOf(strip.rows.rows.front()))),
                  tip = offScalp(middleOf(strip.rows.rows.back()));
     if (std::ranges::find(away, strip.number) != away.end()) {
@@ -189,11 +190,10 @@ void StripInspector::ends(const FittedStrips& fitted, const Character& character
   }
   wrong += reversed.size() + floating.size();
   const std::string of = " of " + countOf(strips.followed.size(), "piece");
-  if (!fitted.turned.empty())
+  if (!turned.empty())
     add("reversed",
-        piecesText(fitted.turned) + of + verbOf(fitted.turned, " has its", " have their") +
-            " other end on the head, and root there",
-        "--flip-strips " + commaList(fitted.turned), true);
+        piecesText(turned) + of + verbOf(turned, " has its", " have their") + " other end on the head, and root there",
+        "--flip-strips " + commaList(turned), true);
   if (!reversed.empty()) {
     const bool all = reversed.size() == strips.followed.size();
     add("reversed",
@@ -265,7 +265,7 @@ GroomInspection inspectWithUp(const PolygonMesh& mesh, const StripOptions& optio
   inspector.unit();
   inspector.axes();
   inspector.roots(fitted, character);
-  inspector.ends(fitted, character);
+  inspector.ends(character);
   inspector.widths();
   inspector.body();
   bad = static_cast<double>(inspector.wrong) / static_cast<double>(strips.followed.size());

@@ -72,10 +72,11 @@ sim::HairMeshShape shavedTo(double length, int layers, const sim::HairMeshShape&
   return shape;
 }
 
-// Hair that fell around a post comes out of the body, where its prisms allow that.
+// Leads hair that fell around a post out of the body, as far as its prisms stay fat enough.
 void leaveBody(const BodyDistance& body, double fatness, sim::HairMeshShape& shape) {
+  constexpr int kRounds = 12;
   sim::HairMeshShape outside = shape;
-  for (int round = 0; round < 12; ++round)
+  for (int round = 0; round < kRounds; ++round)
     if (untangle(body, fatness, kGap, outside) > kMinFatness) shape = outside;
 }
 
