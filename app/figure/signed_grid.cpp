@@ -122,6 +122,8 @@ void rasterizeBand(const Triangles& triangles, double reach, const std::vector<s
   for (const auto& t : triangles) {
     const Vec3 normal = (t[1] - t[0]).cross(t[2] - t[0]).normalized();  // nought of a triangle without area
     const Vec3 low = t[0].cwiseMin(t[1]).cwiseMin(t[2]), high = t[0].cwiseMax(t[1]).cwiseMax(t[2]);
+    const Vec3 middle = 0.5 * (low + high);
+    const double radius = 1.0001 * 0.5 * (high - low).norm();  // of a ball that holds it
     std::array<int, 3> first, last;
     for (int a = 0; a < 3; ++a) {
       first[a] = std::max(0, static_cast<int>(std::ceil((low[a] - reach - g.low[a]) / g.h)));
@@ -133,7 +135,9 @@ void rasterizeBand(const Triangles& triangles, double reach, const std::vector<s
           const std::size_t at = g.index(i, j, k);
           float& d = g.distance[at];
           const Vec3 p = g.point(i, j, k);
-          if (std::abs(normal.dot(p - t[0])) > 1.0001 * d) continue;  // its plane is farther already
+          const double most = 1.0001 * d;  // what is farther changes nothing
+          if ((p - middle).squaredNorm() > (most + radius) * (most + radius)) continue;
+          if (std::abs(normal.dot(p - t[0])) > most) continue;
           const Vec3 off = offTriangle(p, t[0], t[1], t[2]);
           if (votes && (*votes)[at] >= kInside && buried(p - off + g.h * normal, *votes, g)) continue;
           d = std::min(d, static_cast<float>(std::sqrt(off.squaredNorm())));
