@@ -14,7 +14,7 @@ namespace app {
 enum class JsonKind { kScene, kPreset, kProject };
 
 inline constexpr std::string_view kProjectKey = "hairmesh-project";
-inline constexpr std::array<std::string_view, 8> kSceneKeys{"name", "characters", "camera",   "light",
+inline constexpr std::array<std::string_view, 9> kSceneKeys{"name", "characters", "camera",   "bookmarks", "light",
                                                             "view", "sim",        "playback", "preset"};
 inline constexpr std::array<std::string_view, 20> kCharacterKeys{
     "motion",   "parts",   "body",        "clip", "style", "resolution", "hair", "reverse_faces", "fit",  "mends",

@@ -117,6 +117,23 @@ CameraSpec readCamera(const JsonPlace& place) {
   return camera;
 }
 
+Bookmarks readBookmarks(const JsonPlace& place) {
+  Bookmarks bookmarks;
+  for (std::size_t i = 0; i < place.arraySize(bookmarks.size()); ++i)
+    if (const JsonPlace one = place.at(i); !one.value().is_null()) bookmarks[i] = readCamera(one);
+  return bookmarks;
+}
+
+json writeCamera(const CameraSpec& camera) {
+  json text = {{"view", camera.view}, {"framing", camera.framing}, {"fov", camera.fov}, {"follow", camera.follow}};
+  if (camera.eye && camera.target) {
+    text["eye"] = fromVec3(*camera.eye);
+    text["target"] = fromVec3(*camera.target);
+    text["of_head"] = camera.of_head;
+  }
+  return text;
+}
+
 PlaybackSpec readPlayback(const JsonPlace& place) {
   expectKeys(place, kPlaybackKeys);
   PlaybackSpec playback;
@@ -202,6 +219,7 @@ Scene readScene(std::string_view text, const std::string& file) {
     scene.characters.push_back(readCharacter(characters.at(i), preset_look));
   }
   if (place.has("camera")) scene.camera = readCamera(place.at("camera"));
+  if (place.has("bookmarks")) scene.bookmarks = readBookmarks(place.at("bookmarks"));
   if (place.has("light")) readSceneRows(place.at("light"), scene.look, true);
   if (place.has("view")) readSceneRows(place.at("view"), scene.look, false);
   if (place.has("sim")) readSimRows(place.at("sim"), scene.sim);
@@ -221,18 +239,12 @@ std::string writeScene(const Scene& scene) {
   if (!preset.empty()) loadPreset(scene.preset, {&base.sim, &base.look, looks});
   json characters = json::array();
   for (const CharacterSpec& spec : scene.characters) characters.push_back(writeCharacter(spec, base_look));
-  json camera = {{"view", scene.camera.view},
-                 {"framing", scene.camera.framing},
-                 {"fov", scene.camera.fov},
-                 {"follow", scene.camera.follow}};
-  if (scene.camera.eye && scene.camera.target) {
-    camera["eye"] = fromVec3(*scene.camera.eye);
-    camera["target"] = fromVec3(*scene.camera.target);
-    camera["of_head"] = scene.camera.of_head;
-  }
+  json bookmarks = json::array();
+  for (const std::optional<CameraSpec>& one : scene.bookmarks) bookmarks.push_back(one ? writeCamera(*one) : json());
+  while (!bookmarks.empty() && bookmarks.back().is_null()) bookmarks.erase(bookmarks.size() - 1);
   json text = {{"name", scene.name},
                {"characters", characters},
-               {"camera", camera},
+               {"camera", writeCamera(scene.camera)},
                {"light", writeSceneRows(scene.look, true, base.look)},
                {"view", writeSceneRows(scene.look, false, base.look)},
                {"sim", writeSimRows(scene.sim, base.sim)},
@@ -243,6 +255,7 @@ std::string writeScene(const Scene& scene) {
                  {"budget_ms", scene.playback.budget_ms},
                  {"deadline_ms", scene.playback.deadline_ms},
                  {"draw_budget_ms", scene.playback.draw_budget_ms}}}};
+  if (!bookmarks.empty()) text["bookmarks"] = bookmarks;
   if (!preset.empty()) text["preset"] = preset;
   return text.dump(2, ' ', false, json::error_handler_t::replace) + "\n";
 }

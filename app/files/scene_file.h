@@ -81,6 +81,9 @@ struct CameraSpec {
   bool of_head = false;                // eye and target count from that character's head
 };
 
+// Views that a person kept, of the keys 1 to 4.
+using Bookmarks = std::array<std::optional<CameraSpec>, 4>;
+
 struct PlaybackSpec {
   double speed = 1;           // clip seconds per second
   double fps = 60;            // frames per second of a headless run
@@ -102,6 +105,7 @@ struct Scene {
   std::string name = "untitled";
   std::vector<CharacterSpec> characters;
   CameraSpec camera;
+  Bookmarks bookmarks;
   SceneLook look;
   sim::SimParams sim;
   PlaybackSpec playback;

@@ -231,7 +231,9 @@ void replaceScene(Demo fresh, Demo& demo) {
   fresh.file_ends = std::move(demo.file_ends);
   fresh.edits = std::move(demo.edits);
   fresh.timeline.on = demo.timeline.on;
-  fresh.bookmarks = demo.bookmarks;
+  // A scene without any leaves those there are.
+  const auto isKept = [](const std::optional<Camera>& one) { return one.has_value(); };
+  if (std::none_of(fresh.bookmarks.begin(), fresh.bookmarks.end(), isKept)) fresh.bookmarks = demo.bookmarks;
   fresh.message = "scene " + fresh.scene.name;
   demo = std::move(fresh);
 }

@@ -268,6 +268,8 @@ Demo openScene(Scene scene, double aspect, bool beside) {
   const double settle = demo.scene.playback.settle;
   settleActor(demo.scene.sim, settle, demo.actors.front());
   demo.camera = makeCamera(demo.scene.camera, demo.actors.front(), aspect);
+  for (std::size_t i = 0; i < demo.bookmarks.size(); ++i)
+    if (const auto& kept = demo.scene.bookmarks[i]) demo.bookmarks[i] = makeCamera(*kept, demo.actors.front(), aspect);
   chooseDetail(demo);
   for (std::size_t i = 1; i < demo.actors.size(); ++i) {
     settleInDetail(settle, demo, demo.actors[i]);

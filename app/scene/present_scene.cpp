@@ -34,16 +34,25 @@ void makeMovable(const std::string& kind, const fs::path& beside, std::string& f
   }
 }
 
+// Where a camera stands, from the head or in the world.
+void placeCamera(const Camera& camera, bool of_head, CameraSpec& spec) {
+  spec.fov = camera.fov;
+  spec.follow = camera.follow;
+  spec.of_head = of_head;
+  spec.target = of_head ? camera.target : Vec3(camera.anchor + camera.target);
+  spec.eye = *spec.target + camera.distance * viewBack(camera);
+}
+
 }  // namespace
 
 Scene presentScene(const Demo& demo) {
   Scene scene = demo.scene;
   for (std::size_t i = 0; i < demo.actors.size(); ++i) scene.characters[i] = demo.actors[i].spec;
-  const Camera& camera = demo.camera;
-  scene.camera.fov = camera.fov;
-  scene.camera.follow = scene.camera.of_head = camera.follow;
-  scene.camera.target = camera.follow ? camera.target : Vec3(camera.anchor + camera.target);
-  scene.camera.eye = *scene.camera.target + camera.distance * viewBack(camera);
+  placeCamera(demo.camera, demo.camera.follow, scene.camera);
+  for (std::size_t i = 0; i < demo.bookmarks.size(); ++i) {
+    scene.bookmarks[i].reset();
+    if (demo.bookmarks[i]) placeCamera(*demo.bookmarks[i], true, scene.bookmarks[i].emplace());
+  }
   return scene;
 }
 

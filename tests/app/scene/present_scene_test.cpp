@@ -57,6 +57,38 @@ TEST(PresentScene, SavedAndOpenedItIsTheSame) {
   EXPECT_NEAR(opened.camera.pitch, demo.camera.pitch, 1e-9);
 }
 
+// Three kept views, the second one's place empty, go with the scene; one without any leaves those of the window.
+TEST(PresentScene, KeptViewsAreSavedWithIt) {
+  app::Demo demo = smallDemo();
+  const auto ask = [&](const app::Request& request) {
+    demo.requests = {request};
+    app::advanceFrame(demo, 0, {});
+    ASSERT_FALSE(demo.message_is_fault) << demo.message;
+  };
+  for (const int place : {0, 2, 3}) {
+    ask({Ask::kView, place == 0 ? "front" : place == 2 ? "side" : "back", ""});
+    ask({Ask::kLens, "", "", 0.3 + 0.1 * place});
+    ask({Ask::kKeepView, "", "", static_cast<double>(place)});
+  }
+  const auto kept = demo.bookmarks;
+  const std::string folder = test::freshFolder("kept_views");
+  ask({Ask::kSaveScene, "", folder + "/mine.json"});
+  const app::Demo opened = app::openScene(app::loadScene(folder + "/mine.json"), 1.5);
+  EXPECT_FALSE(opened.bookmarks[1]);
+  for (const int place : {0, 2, 3}) {
+    ASSERT_TRUE(opened.bookmarks[place]) << place;
+    EXPECT_NEAR((opened.bookmarks[place]->target - kept[place]->target).norm(), 0, 1e-12);
+    EXPECT_NEAR(opened.bookmarks[place]->distance, kept[place]->distance, 1e-9);
+    EXPECT_NEAR(opened.bookmarks[place]->yaw, kept[place]->yaw, 1e-9);
+    EXPECT_NEAR(opened.bookmarks[place]->fov, 0.3 + 0.1 * place, 1e-12);
+  }
+  ask({Ask::kSceneFile, "", app::dataPath("assets/scenes/head_shake.json")});
+  EXPECT_TRUE(demo.bookmarks[2]) << "a scene without views takes none away";
+  ask({Ask::kKeepView, "", "", 1});
+  ask({Ask::kSceneFile, "", folder + "/mine.json"});
+  EXPECT_FALSE(demo.bookmarks[1]) << "a scene with views has its own";
+}
+
 TEST(PresentScene, FilesOfTheProgramAreNamedBare) {
   app::Scene scene;
   app::CharacterSpec spec;
