@@ -77,6 +77,10 @@ void StepContext::reshape(HairState& state) {
   state.memory.self_contact = {};
 }
 
+Material& StepContext::material() {
+  return parts_->material;
+}
+
 SafetyNets& StepContext::safetyNets() {
   return parts_->stabilization.nets;
 }
@@ -95,7 +99,8 @@ Refresh refreshModel(const SimParams& params, MaterialMemory& memory, Parts& par
   Material& material = parts.material;
   const auto setModel = [&](auto& solver) { solver.setModel(*parts.mesh, material.model, params.density); };
   const bool changed = !memory.known || !sameMaterial(params, memory.params), follows = parts.gradual && memory.known;
-  bool other = material.recall(changed && !follows ? MaterialMemory{true, params, params, params} : memory);
+  bool other = (!memory.known && material.start(params)) ||
+               material.recall(changed && !follows ? MaterialMemory{true, params, params, params} : memory);
   Refresh refresh{other || changed || material.outdated(), changed};
   if (changed && follows) {
     material.follow(params);
@@ -358,14 +363,6 @@ StepReport advance(const HairMesh& mesh, const SimParams& asked, const StepInput
   parts.clock.spent(kStageCollision, report);
   endStep(taken, input, parts, state, report);
   return report;
-}
-
-double mechanicalEnergy(const HairMesh& mesh, const SimParams& asked, StepContext& context, const HairState& state) {
-  Parts& parts = context.parts();
-  const SimParams params = limited(mesh, asked, parts);
-  MaterialMemory memory = state.memory.material;
-  refreshModel(params, memory, parts);
-  return energyOf(params, Vec3::Zero(), state, parts);
 }
 
 HairState restState(const HairMesh& mesh, const Eigen::Isometry3d& head_to_world) {

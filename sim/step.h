@@ -13,6 +13,8 @@
 
 namespace sim {
 
+struct Material;
+
 // Scratch memory and everything derived from mesh and parameters (matrix patterns, factors). Keep one per hair; a step
 // allocates nothing once it is warm. `clock` returns seconds, for stage times (nullptr: not measured).
 class StepContext {
@@ -32,6 +34,9 @@ class StepContext {
   // context steps. A state saved within those steps goes on with the new balance at once.
   void reshape(HairState& state);
 
+  // The force model, and gravity's balance, which that of other hair may start from.
+  Material& material();
+
   // The safety nets in use (all at first), to measure what each saves. Solver::kPaper uses kAsPublished.
   SafetyNets& safetyNets();
 
@@ -45,10 +50,6 @@ class StepContext {
 // Advances `state` by dt seconds. Never leaves a value that is not finite in `state`.
 StepReport advance(const HairMesh& mesh, const SimParams& params, const StepInput& input, double dt,
                    StepContext& context, HairState& state);
-
-// Kinetic, elastic and gravitational energy of a state (J); gravity's zero is at y = 0. `context` keeps what is derived
-// from the parameters.
-double mechanicalEnergy(const HairMesh& mesh, const SimParams& params, StepContext& context, const HairState& state);
 
 // The rest shape carried to world by a rigid transform, at rest or moving with `velocity` fields zero.
 HairState restState(const HairMesh& mesh, const Eigen::Isometry3d& head_to_world);

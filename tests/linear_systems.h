@@ -6,6 +6,7 @@
 #include "sim/forces/model.h"
 #include "sim/linear/modified_pcg.h"
 #include "tests/bench/preconditioners/preconditioner.h"
+#include "tests/block_product.h"
 #include "tests/sim_probes.h"
 #include "tests/test_meshes.h"
 

@@ -1,10 +1,15 @@
 // What tests and benchmarks ask of the simulator's values beyond what the simulator itself does.
 #pragma once
 
+#include <utility>
+#include <vector>
+
 #include "sim/contact/colliders.h"
 #include "sim/forces/rest_balance.h"
 #include "sim/mesh/field_bytes.h"
 #include "sim/mesh/hair_state.h"
+#include "sim/stabilization/parameter_limits.h"
+#include "sim/step.h"
 
 namespace test {
 
@@ -38,6 +43,23 @@ inline bool sameBits(const sim::HairState& a, const sim::HairState& b) {
   sim::writeBytes(a, one);
   sim::writeBytes(b, other);
   return one == other;
+}
+
+// Kinetic, elastic and gravitational energy of a state (J); gravity's zero is at y = 0. `context` keeps what is derived
+// from the parameters.
+inline double mechanicalEnergy(const sim::HairMesh& mesh, const sim::SimParams& asked, sim::StepContext& context,
+                               const sim::HairState& state) {
+  const sim::SimParams params = context.safetyNets().parameter_limits ? sim::limitedParameters(mesh, asked) : asked;
+  sim::Material& material = context.material();
+  if (!material.memory().known || !sim::sameMaterial(params, material.memory().params)) material.set(params);
+  std::vector<sim::V3<double>> x;
+  for (const sim::Vec3& p : state.positions) x.push_back({p.x(), p.y(), p.z()});
+  double energy = sim::evaluate<double>(material.model, x, {});
+  for (std::size_t i = 0; i < state.positions.size(); ++i) {
+    const double specific = 0.5 * state.velocities[i].squaredNorm() + params.gravity * state.positions[i].y();
+    energy += params.density * mesh.vertex_volume[i] * specific;
+  }
+  return energy;
 }
 
 }  // namespace test

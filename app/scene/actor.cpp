@@ -60,12 +60,26 @@ LoadedBody& loadBody(const CharacterSpec& spec, AssetCache& asset_cache) {
   return *asset_cache.bodies.back();
 }
 
+// Four a face: of a triangle the first one twice.
+std::vector<Vec3> rootCorners(const sim::HairMeshShape& shape) {
+  std::vector<Vec3> corners;
+  for (const sim::RootFace& face : shape.root_faces) {
+    for (int k = 0; k < 4; ++k) {
+      const int column = face.columns[static_cast<std::size_t>(k % face.corner_count)];
+      corners.push_back(
+          shape.positions[static_cast<std::size_t>(shape.column_first[static_cast<std::size_t>(column)])]);
+    }
+  }
+  return corners;
+}
+
 const ScalpCover& coverScalp(const LoadedBody& body, const Haircut& haircut, AssetCache& asset_cache) {
+  std::vector<Vec3> roots = rootCorners(haircut.mesh.shape);
   for (const auto& scalp : asset_cache.covers) {
-    if (scalp->body_id == body.id && scalp->haircut_id == haircut.id) return *scalp;
+    if (scalp->body_id == body.id && scalp->roots == roots) return *scalp;
   }
   asset_cache.covers.push_back(std::make_unique<ScalpCover>(
-      ScalpCover{freshId(), body.id, haircut.id, rootCover(body.character, haircut.mesh)}));
+      ScalpCover{freshId(), body.id, std::move(roots), rootCover(body.character, haircut.mesh)}));
   return *asset_cache.covers.back();
 }
 

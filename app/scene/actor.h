@@ -89,9 +89,10 @@ struct Haircut {
   std::optional<CutStroke> cut;                 // the one that is being drawn
 };
 
-// Where a body is scalp among the roots of a haircut; see root_cover.h.
+// Where a body is scalp among the roots of haircuts; see root_cover.h.
 struct ScalpCover {
-  std::uint64_t id = 0, body_id = 0, haircut_id = 0;
+  std::uint64_t id = 0, body_id = 0;
+  std::vector<sim::Vec3> roots;  // m, scalp frame: corners of the root faces, one after the other
   std::vector<float> cover;
 };
 

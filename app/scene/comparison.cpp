@@ -18,6 +18,7 @@
 #include "app/scene/edit/hand_pins.h"
 #include "app/scene/edit/mesh_change.h"
 #include "app/scene/present_scene.h"
+#include "sim/forces/rest_balance.h"
 
 namespace app {
 
@@ -89,7 +90,8 @@ void catchUp(const Demo& demo, Demo& other) {
   if (sameHair(demo, other)) {
     for (std::size_t i = 0; i < demo.actors.size(); ++i) {
       if (demo.actors[i].haircut->remeshed)
-        bringBackShape(demo.actors[i].haircut->mesh.shape, static_cast<int>(i), other);
+        bringBackShape(demo.actors[i].haircut->mesh.shape, demo.actors[i].context->material().sag(),
+                       static_cast<int>(i), other);
       else if (demo.actors[i].haircut->edited)
         reshapeHair(demo.actors[i].haircut->mesh.shape.positions, static_cast<int>(i), other);
       repin(demo.actors[i].spec.pins, other.actors[i]);

@@ -22,6 +22,8 @@
 #include "app/scene/edit/groom_brush.h"
 #include "app/scene/edit/mesh_change.h"
 #include "app/scene/present_scene.h"
+#include "sim/forces/rest_balance.h"
+#include "sim/linear/vector3.h"
 #include "sim/mesh/field_bytes.h"
 
 namespace app {
@@ -47,6 +49,14 @@ std::string textOf(const sim::Bytes& bytes) {
   return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
 }
 
+// How far gravity would draw hair whose mesh is its own: from there its balance goes on where the project is opened.
+std::vector<Vec3> sagOf(const Actor& actor) {
+  std::vector<Vec3> sag;
+  if (!actor.haircut->remeshed) return sag;
+  for (const sim::V3<double>& way : actor.context->material().sag()) sag.emplace_back(way.x, way.y, way.z);
+  return sag;
+}
+
 sim::Bytes binaryOf(const Demo& demo) {
   sim::Bytes bytes;
   for (const Actor& actor : demo.actors) sim::writeBytes(actor.spec.brushed, bytes);
@@ -56,6 +66,7 @@ sim::Bytes binaryOf(const Demo& demo) {
     sim::writeBytes(actor.haircut->remeshed ? shape.column_first : std::vector<int>(), bytes);
     sim::writeBytes(actor.haircut->remeshed ? faceRows(shape) : std::vector<FaceRow>(), bytes);
     sim::writeBytes(actor.haircut->remeshed ? shape.groom_offsets : std::vector<Vec3>(), bytes);
+    sim::writeBytes(sagOf(actor), bytes);
   }
   const std::string state = demoStateBytes(demo);
   sim::writeBytes(std::vector<char>(state.begin(), state.end()), bytes);
@@ -94,6 +105,8 @@ void takeShape(sim::ByteReader& from, double version, const std::string& file, i
     sim::readBytes(from, faces);
   }
   if (version > 2) sim::readBytes(from, shape.groom_offsets);
+  std::vector<Vec3> sag;
+  if (version > 4) sim::readBytes(from, sag);
   if (shape.positions.empty()) return;
   const std::size_t vertices = demo.actors[static_cast<std::size_t>(index)].hair.positions.size();
   if (!from.complete || (columns.empty() && shape.positions.size() != vertices))
@@ -102,6 +115,9 @@ void takeShape(sim::ByteReader& from, double version, const std::string& file, i
   shape.column_first = columns;
   shape.root_faces = rootFaces(faces);
   remeshHair(std::move(shape), {}, index, demo);
+  std::vector<sim::V3<double>> start;
+  for (const Vec3& way : sag) start.push_back({way.x(), way.y(), way.z()});
+  demo.actors[static_cast<std::size_t>(index)].context->material().startFrom(std::move(start));
 }
 
 }  // namespace

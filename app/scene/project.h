@@ -2,11 +2,11 @@
 // the bit where no brush has reshaped the hair, else from the same bits and to rounding afterwards (what a step derives
 // from the rest shape in advance is then made from another one).
 //
-// A project is a JSON file: {"hairmesh-project": 4, "scene": as scene_file.h says, "binary": name, "checksum": text}.
+// A project is a JSON file: {"hairmesh-project": 5, "scene": as scene_file.h says, "binary": name, "checksum": text}.
 // The binary beside it holds what was brushed before hair was tied or covered (from version 4 on), reshaped rest
-// positions, of hair meshes that were changed the structure (2) and groom offsets (3), and the state (demo_state.h); it is NAME-CHECKSUM.bin, so that a project that cannot be
-// saved leaves the one that was there with its own. What is kept of a run by itself has "autosave_of" besides: the file
-// of its scene, or "".
+// positions, of hair meshes that were changed the structure (2), groom offsets (3) and how far gravity would draw them
+// (5), and the state (demo_state.h); it is NAME-CHECKSUM.bin, so that a project that cannot be saved leaves the one
+// that was there with its own. What is kept of a run by itself has "autosave_of" besides: the file of its scene, or "".
 #pragma once
 
 #include <string>
@@ -15,7 +15,7 @@
 
 namespace app {
 
-inline constexpr int kProjectVersion = 4;
+inline constexpr int kProjectVersion = 5;
 
 // With `name` for the scene's; empty: it keeps its own. Throws OutputError; then the project that was there is whole.
 void saveProject(const std::string& file, const Demo& demo, const std::string& name = "");

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "sim/forces/kernels.h"
 #include "sim/linear/modified_pcg.h"
@@ -12,11 +13,9 @@ namespace {
 
 constexpr double kResidual = 2e-10;  // of a vertex's weight
 constexpr int kMaxIterations = 3000;
-constexpr int kReshapeWait = 5;  // steps: a stroke changes the shape again
-
-V3<double> plain(const Vec3& p) {
-  return {p.x(), p.y(), p.z()};
-}
+constexpr int kPatience = 1000, kDoubling = 100;   // iterations: rounding keeps some hair from kResidual
+constexpr int kSmallHair = 1000, kLeastSlice = 6;  // vertices up to which slices are whole; iterations
+constexpr int kReshapeWait = 5;                    // steps: a stroke changes the shape again
 
 template <class Kind>
 constexpr int kIndex = ForceKinds::indexOf<Kind>();
@@ -47,18 +46,19 @@ struct Material::Solve {
         packed(layout),
         preconditioner(mesh) {
     for (auto* array : {&load, &y, &r, &z, &d, &q}) array->resize(mesh.vertexCount());
-    for (const Vec3& p : mesh.shape.positions) x.push_back(plain(p));
+    for (const Vec3& p : mesh.shape.positions) x.push_back({p.x(), p.y(), p.z()});
     packed.pack(layout, x);
     free.vertices.assign(mesh.shape.column_first.begin(), mesh.shape.column_first.end() - 1);
     free.keep.resize(mesh.columnCount());
   }
 
-  // Takes the elements and the weight (N/m^3); assemble() is a step's work of its own.
-  void begin(const HairMesh& mesh, const ForceModel<double>& model, double weight) {
+  // Takes the elements, the weight (N/m^3) and where to begin; assemble() is a step's work of its own.
+  void begin(const HairMesh& mesh, const ForceModel<double>& model, double weight, std::span<const V3<double>> start) {
     elements.setElements(mesh, layout, model);
     for (int i = 0; i < mesh.vertexCount(); ++i) load[i] = {0, -weight * mesh.vertex_volume[i], 0};
     free.apply(load);
-    std::fill(y.begin(), y.end(), V3<double>{});
+    start.size() == y.size() ? y.assign(start.begin(), start.end()) : y.assign(y.size(), {});
+    free.apply(y);
     assembled = false;
     iterations = 0;
   }
@@ -106,8 +106,9 @@ struct Material::Solve {
   }
 
   bool balanced() const {
+    const double allowed = std::ldexp(kResidual, std::max(0, iterations - kPatience) / kDoubling);
     for (std::size_t i = 0; i < r.size(); ++i) {
-      if (!(dot(r[i], r[i]) <= kResidual * kResidual * load[i].y * load[i].y)) return false;
+      if (!(dot(r[i], r[i]) <= allowed * allowed * load[i].y * load[i].y)) return false;
     }
     return true;
   }
@@ -128,18 +129,33 @@ void Material::rebuild() {
   solving_ = false;
 }
 
-void Material::set(const SimParams& params) {
+void Material::beginAnew(const SimParams& params) {
   params_ = params;
   if (!setStiffness({*mesh_, params}, model)) rebuild();
   solving_ = false;
   memory_ = {.known = true, .params = params, .balanced = params, .coming = params};
   balance_.load = 0;
   applyBalance();
-  if (wantedLoad() <= 0) return;
-  beginBalance();
+  sag_.clear();
+  if (wantedLoad() > 0) beginBalance();
+}
+
+void Material::set(const SimParams& params) {
+  beginAnew(params);
   while (solving_) continueBalance(kMaxIterations);
   memory_.slices = 0;
   solve_.reset();
+}
+
+bool Material::start(const SimParams& params) {
+  if (start_.empty()) return false;
+  beginAnew(params);
+  if (solving_) continueBalance(0), continueBalance(kFirst);  // the first call assembles
+  if (!solving_) return memory_.slices = 0, true;
+  takeChanges();
+  coming_ = balance_;
+  applyBalance();
+  return true;
 }
 
 void Material::follow(const SimParams& params) {
@@ -174,7 +190,8 @@ bool Material::work() {
     return false;
   }
   ++memory_.slices;
-  const bool changed = continueBalance(kSlice);
+  const double share = std::min(1.0, static_cast<double>(kSmallHair) / mesh_->vertexCount());
+  const bool changed = continueBalance(std::max(kLeastSlice, static_cast<int>(kSlice * share * std::sqrt(share))));
   if (!solving_) memory_.slices = 0;
   if (changed) memory_.balanced = memory_.coming;
   return changed;
@@ -212,7 +229,7 @@ void Material::beginBalance() {
     coming_.stiffness[kIndex<Kind>] = elements.stiffness;
   });
   if (!solve_) solve_ = std::make_unique<Solve>(*mesh_);
-  solve_->begin(*mesh_, model, coming_.load);
+  solve_->begin(*mesh_, model, coming_.load, std::exchange(start_, {}));
   solving_ = true;
 }
 
@@ -251,6 +268,7 @@ void Material::takeChanges() {
     }
   });
   std::swap(balance_, coming_);
+  sag_ = solve_->y;
 }
 
 // What balances gravity is the product of stiffness and shift: a balance serves other stiffnesses and loads too.

@@ -32,6 +32,13 @@ struct Material {
   // 1e-9 unless a kind's maxShift bounds a shift.
   void set(const SimParams& params);
 
+  // How far gravity would draw the styled hair without the balance in use (m, one a vertex); empty: there is none. The
+  // next balance is sought from there. start(): set() as near as kFirst iterations come from there, work() goes on;
+  // false where there is nothing to start from.
+  const std::vector<V3<double>>& sag() const { return start_.empty() ? sag_ : start_; }
+  void startFrom(std::vector<V3<double>> sag) { start_ = std::move(sag); }
+  bool start(const SimParams& params);
+
   // Stiffnesses and weight follow at once, the balance by its products. Then outdated() until its own is solved for.
   void follow(const SimParams& params);
 
@@ -42,9 +49,9 @@ struct Material {
   // Makes the elements anew that the step's input moves.
   void setMoving(std::span<const PinnedVertex> pins);
 
-  // Goes on with the solve for the balance of the last parameters by kSlice iterations; answers whether `model` has
-  // just changed. A parameter that changes meanwhile lets the solve finish and begin again.
-  static constexpr int kSlice = 32;
+  // Goes on with the solve for the balance of the last parameters by up to kSlice iterations, fewer of large hair;
+  // answers whether `model` has just changed. A parameter that changes meanwhile lets the solve finish and begin again.
+  static constexpr int kSlice = 32, kFirst = 16;
   bool work();
   bool outdated() const { return memory_.outdated || solving_; }
 
@@ -59,6 +66,7 @@ struct Material {
   SimParams params_;
   std::array<std::vector<double>, ForceKinds::kCount> unloaded_;  // shifts before any balance
   RestBalance balance_, coming_;
+  std::vector<V3<double>> sag_, start_;
   MaterialMemory memory_;
   struct Solve;  // that of `coming_`; kept while sliders are dragged
   std::unique_ptr<Solve> solve_;
@@ -66,6 +74,7 @@ struct Material {
 
   double wantedLoad() const { return params_.sag_free ? params_.density * params_.gravity : 0; }
   void rebuild();
+  void beginAnew(const SimParams& params);
   void beginBalance();
   bool continueBalance(int iterations);
   void takeChanges();

@@ -27,23 +27,4 @@ BlockPattern makePattern(int size, std::vector<std::pair<int, int>> pairs) {
   return pattern;
 }
 
-template <class T>
-void multiply(const BlockMatrix<T>& a, std::span<const V3<T>> x, std::span<V3<T>> y) {
-  const BlockPattern& pattern = *a.pattern;
-  for (int i = 0; i < pattern.size; ++i) y[i] = a.diagonal[i] * x[i];
-  for (int i = 0; i < pattern.size; ++i) {
-    V3<T> sum{0, 0, 0};
-    const V3<T> xi = x[i];
-    for (int k = pattern.row_first[i]; k < pattern.row_first[i + 1]; ++k) {
-      const int j = pattern.columns[k];
-      sum += a.lower[k] * x[j];
-      y[j] += transposeTimes(a.lower[k], xi);
-    }
-    y[i] += sum;
-  }
-}
-
-template void multiply(const BlockMatrix<float>&, std::span<const V3<float>>, std::span<V3<float>>);
-template void multiply(const BlockMatrix<double>&, std::span<const V3<double>>, std::span<V3<double>>);
-
 }  // namespace sim

@@ -1,8 +1,6 @@
 // Symmetric sparse matrix of 3x3 blocks with a fixed pattern: the diagonal and the blocks below it.
 #pragma once
 
-#include <cstdint>
-#include <span>
 #include <utility>
 #include <vector>
 
@@ -36,9 +34,5 @@ struct BlockMatrix {
     for (M3<T>& b : lower) b = M3<T>{};
   }
 };
-
-// y = A x.
-template <class T>
-void multiply(const BlockMatrix<T>& a, std::span<const V3<T>> x, std::span<V3<T>> y);
 
 }  // namespace sim

@@ -9,6 +9,7 @@
 #include "tests/bench/collisions.h"
 #include "tests/bench/cpu_clock.h"
 #include "tests/bench/scene_times.h"
+#include "tests/sim_probes.h"
 
 namespace bench {
 namespace {
@@ -155,7 +156,7 @@ void writeSpawns(std::FILE* out) {
       ball.center.z() = hair.low.z() + 0.02;
       ball.radii = Vec3::Constant(0.05);
       Scene scene(actor, ball);
-      const auto energy = [&] { return sim::mechanicalEnergy(scene.mesh(), params, scene.context, scene.hair); };
+      const auto energy = [&] { return test::mechanicalEnergy(scene.mesh(), params, scene.context, scene.hair); };
       const double at_first = scene.deepest(), before = energy();
       double fastest = 0, most = 0, highest = -INFINITY;
       int steps = 0, recoveries = 0;

@@ -5,6 +5,7 @@
 #include "app/files/errors.h"
 #include "sim/implicit_solve.h"
 #include "tests/bench/preconditioners/preconditioner.h"
+#include "tests/block_product.h"
 #include "tests/sim_probes.h"
 
 namespace bench {

@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "sim/contact/contact.h"
+#include "tests/block_product.h"
 #include "tests/oracle/plain_contact.h"
 #include "tests/sim_probes.h"
 

@@ -2,6 +2,7 @@
 // one step to the next, not only against what the motion left.
 #include <gtest/gtest.h>
 
+#include "tests/sim_probes.h"
 #include "tests/test_meshes.h"
 
 namespace energy_test {
@@ -50,7 +51,7 @@ sim::SimParams solvedTightly(Integrator integrator) {
 // The largest rise of the energy in a step, of what the disturbance put in.
 double largestRise(const sim::SimParams& params, const Disturbance& disturbance, double dt) {
   Hair hair(test::combedShape(test::mixedPatch(7, 0.3)), params);
-  const auto energy = [&] { return sim::mechanicalEnergy(hair.mesh, params, hair.context, hair.state); };
+  const auto energy = [&] { return test::mechanicalEnergy(hair.mesh, params, hair.context, hair.state); };
   const double rest = energy();
   disturbance.apply(hair);
   double before = energy(), worst = 0;

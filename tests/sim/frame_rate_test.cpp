@@ -6,6 +6,7 @@
 
 #include "app/files/data_path.h"
 #include "app/scene/demo.h"
+#include "tests/sim_probes.h"
 #include "tests/test_meshes.h"
 
 namespace frame_rate_test {
@@ -65,10 +66,10 @@ TEST(FrameRate, DampingIsPerSecondNotPerStep) {
       hair.state.velocities[i] = sim::Vec3(2 * (hair.roots[0].y() - hair.state.positions[i].y()), 0, 0);
     sim::StepContext probe(hair.mesh);
     const double rest =
-        sim::mechanicalEnergy(hair.mesh, params, probe, sim::restState(hair.mesh, Eigen::Isometry3d::Identity()));
-    const double start = sim::mechanicalEnergy(hair.mesh, params, probe, hair.state) - rest;
+        test::mechanicalEnergy(hair.mesh, params, probe, sim::restState(hair.mesh, Eigen::Isometry3d::Identity()));
+    const double start = test::mechanicalEnergy(hair.mesh, params, probe, hair.state) - rest;
     for (int n = 0; n < std::lround(0.25 / step); ++n) hair.step(step);
-    left.push_back((sim::mechanicalEnergy(hair.mesh, params, probe, hair.state) - rest) / start);
+    left.push_back((test::mechanicalEnergy(hair.mesh, params, probe, hair.state) - rest) / start);
   }
   std::printf("energy left after a quarter of a second: %.4f %.4f %.4f\n", left[0], left[1], left[2]);
   EXPECT_GT(left[0], 0);

@@ -118,6 +118,30 @@ TEST(SliderDrag, TheBalanceEndsAsTheOneMadeAtOnce) {
   });
 }
 
+// Hair that takes another's place starts from how far gravity would draw that one.
+TEST(SliderDrag, ABalanceGoesOnFromWhereAnotherEnded) {
+  const sim::HairMesh mesh = sim::buildHairMesh(test::combedShape(patch()));
+  const sim::BlockPattern pattern = sim::systemPattern(mesh);
+  const SimParams params;
+  sim::Material first(mesh, pattern), same(mesh, pattern), far(mesh, pattern), none(mesh, pattern);
+  first.set(params);
+  ASSERT_EQ(first.sag().size(), static_cast<std::size_t>(mesh.vertexCount()));
+  same.startFrom(first.sag());
+  ASSERT_TRUE(same.start(params));
+  EXPECT_FALSE(same.outdated()) << "nothing is left to solve";
+  first.model.forEach([&]<class Kind>(const sim::Elements<Kind, double>& elements) {
+    EXPECT_EQ(elements.shift, same.model.of<Kind>().shift) << Kind::kName;
+  });
+  far.startFrom(std::vector<sim::V3<double>>(first.sag().size()));
+  ASSERT_TRUE(far.start(params));
+  EXPECT_TRUE(far.outdated()) << "the step has done so much of it";
+  int steps = 0;
+  while (far.outdated() && steps < kEnough) far.work(), ++steps;
+  EXPECT_LT(steps, kEnough);
+  EXPECT_LT(imbalance(mesh, far.model, params), 1e-6);
+  EXPECT_FALSE(none.start(params));
+}
+
 TEST(SliderDrag, WithoutABalanceTheMotionIsThatOfAnImmediateRefresh) {
   SimParams params = test::tautHair();
   params.sag_free = false;

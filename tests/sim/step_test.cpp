@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "sim/forces/model.h"
+#include "tests/block_product.h"
 #include "tests/sim_probes.h"
 #include "tests/test_meshes.h"
 

@@ -61,7 +61,7 @@ sim::Vec3 windOf(const Run& run) {
 }
 
 double energyOf(const Run& run, Hair& hair) {
-  double energy = sim::mechanicalEnergy(run.hair.mesh, run.params, hair.context, hair.state);
+  double energy = test::mechanicalEnergy(run.hair.mesh, run.params, hair.context, hair.state);
   const sim::Vec3 wind = windOf(run);
   for (int i = 0; i < run.hair.mesh.vertexCount(); ++i) {
     const double mass = run.params.density * run.hair.mesh.vertex_volume[i];

@@ -18,6 +18,7 @@
 #include "app/scene/present_scene.h"
 #include "app/scene/view/row_words.h"
 #include "sim/field_text.h"
+#include "sim/forces/rest_balance.h"
 
 namespace app {
 
@@ -131,7 +132,8 @@ EditSide sideOf(const Demo& demo, int reach) {
   for (const Actor& actor : demo.actors) {
     const Haircut& haircut = *actor.haircut;
     const Rigid head = scalpToWorld(actor.body->character, actor.pose);
-    ActorMoment moment{head, actor.hair, {}, {}, haircut.remeshed, haircut.frozen};
+    ActorMoment moment{head, actor.hair, {}, {}, haircut.remeshed, haircut.frozen, {}};
+    if (haircut.remeshed) moment.sag = actor.context->material().sag();
     if (reach & kOfMotion) moment.playback = actor.playback;
     if (reach & kOfShape || haircut.edited) moment.shape = haircut.mesh.shape;
     side.moments.push_back(std::move(moment));
@@ -271,7 +273,7 @@ void bringBack(const EditSide& side, bool moving, Demo& demo) {
   for (std::size_t i = 0; i < side.moments.size(); ++i) {
     const ActorMoment& moment = side.moments[i];
     if (moment.remeshed) {
-      bringBackShape(moment.shape, static_cast<int>(i), demo);
+      bringBackShape(moment.shape, moment.sag, static_cast<int>(i), demo);
     } else if (moment.hair.positions.size() != demo.actors[i].hair.positions.size()) {
       continue;
     } else if (!moment.shape.positions.empty() &&

@@ -19,6 +19,7 @@
 #include "app/scene/request.h"
 #include "app/scene/view/camera.h"
 #include "app/scene/view/debug_views.h"
+#include "sim/linear/vector3.h"
 #include "sim/mesh/hair_mesh.h"
 #include "sim/mesh/hair_state.h"
 
@@ -35,6 +36,7 @@ struct ActorMoment {
   sim::HairMeshShape shape;  // of hair that brushes have reshaped or are about to; else without positions
   bool remeshed = false;     // that shape has a structure of its own
   std::vector<float> frozen;
+  std::vector<sim::V3<double>> sag;  // Material::sag of that structure
 };
 
 // What an edit can change, as it is at one moment.

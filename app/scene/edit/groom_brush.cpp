@@ -10,6 +10,7 @@
 #include "app/scene/edit/painted_fields.h"
 #include "app/scene/haircuts.h"
 #include "sim/field_text.h"
+#include "sim/forces/rest_balance.h"
 
 namespace app {
 
@@ -62,6 +63,7 @@ Haircut& ownHaircut(Actor& actor, Demo& demo) {
   const std::unique_ptr<sim::StepContext> old = std::move(actor.context);
   actor.context = std::make_unique<sim::StepContext>(own->mesh, now);
   actor.context->refreshGradually(true);
+  actor.context->material().startFrom(old->material().sag());
   asset_cache.haircuts.push_back(std::move(own));
   return *asset_cache.haircuts.back();
 }

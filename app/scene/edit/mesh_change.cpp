@@ -13,6 +13,7 @@
 #include "app/scene/haircuts.h"
 #include "app/scene/sim_to_render.h"
 #include "sim/field_text.h"
+#include "sim/forces/rest_balance.h"
 
 namespace app {
 
@@ -256,6 +257,16 @@ std::vector<Vec3> carriedOffsets(const std::vector<Vec3>& offsets, std::span<con
   return carried;
 }
 
+// How far gravity would draw the hair of the new mesh, by what is known of the old one's.
+std::vector<sim::V3<double>> carriedSag(std::span<const sim::V3<double>> sag, std::span<const VertexSource> sources) {
+  std::vector<sim::V3<double>> carried;
+  if (sag.empty()) return carried;
+  for (const VertexSource& source : sources)
+    carried.push_back((1 - source.share) * sag[static_cast<std::size_t>(source.from)] +
+                      source.share * sag[static_cast<std::size_t>(source.to)]);
+  return carried;
+}
+
 std::unique_ptr<Haircut> haircutOf(sim::HairMeshShape shape, std::span<const VertexSource> sources,
                                    const Actor& actor) {
   const Haircut& worn = *actor.haircut;
@@ -293,19 +304,23 @@ void remeshHair(sim::HairMeshShape shape, std::span<const VertexSource> sources,
   std::unique_ptr<Haircut> own = haircutOf(std::move(shape), sources, actor);
   if (actor.coarse.active) leaveCoarse(actor);
   carryOver(*own, sources, actor);
+  std::vector<sim::V3<double>> sag = carriedSag(actor.context->material().sag(), sources);
   AssetCache& asset_cache = demo.asset_cache;
   asset_cache.haircuts.push_back(std::move(own));
   wearHaircut(*asset_cache.haircuts.back(), actor, asset_cache);
+  actor.context->material().startFrom(std::move(sag));
   repin(std::move(pins), actor);
   tidy(demo.actors, asset_cache);
   beginAnew(demo.timeline);
   demo.shown_fraction = -1;
 }
 
-void bringBackShape(const sim::HairMeshShape& shape, int index, Demo& demo) {
-  const Haircut& worn = *demo.actors[static_cast<std::size_t>(index)].haircut;
-  if (!worn.remeshed || !sameStructure(worn.mesh.shape, shape)) return remeshHair(shape, {}, index, demo);
-  reshapeHair(shape.positions, index, demo);
+void bringBackShape(const sim::HairMeshShape& shape, const std::vector<sim::V3<double>>& sag, int index, Demo& demo) {
+  const Actor& actor = demo.actors[static_cast<std::size_t>(index)];
+  const Haircut& worn = *actor.haircut;
+  if (worn.remeshed && sameStructure(worn.mesh.shape, shape)) return reshapeHair(shape.positions, index, demo);
+  remeshHair(shape, {}, index, demo);
+  actor.context->material().startFrom(sag);
 }
 
 }  // namespace app

@@ -10,6 +10,7 @@
 
 #include "app/groom/edit/mesh_edit.h"
 #include "app/scene/actor.h"
+#include "sim/linear/vector3.h"
 
 namespace app {
 
@@ -58,7 +59,8 @@ void applyMeshChange(const std::string& name, const std::string& text, int actor
 // it is put to rest. Its pins go to the nearest vertices. Throws InputError as above.
 void remeshHair(sim::HairMeshShape shape, std::span<const VertexSource> sources, int actor, Demo& demo);
 
-// Gives the actor's hair a shape that it or another had: its positions, and its structure where that differs.
-void bringBackShape(const sim::HairMeshShape& shape, int actor, Demo& demo);
+// Gives the actor's hair a shape that it or another had: its positions, and its structure where that differs. `sag`:
+// Material::sag, then.
+void bringBackShape(const sim::HairMeshShape& shape, const std::vector<sim::V3<double>>& sag, int actor, Demo& demo);
 
 }  // namespace app

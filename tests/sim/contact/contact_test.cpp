@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/sim_probes.h"
 #include "tests/test_meshes.h"
 
 namespace contact_test {
@@ -345,7 +346,7 @@ TEST(Contact, AnOverlapAtTheStartIsResolvedAtABoundedSpeedAndLeavesNoMotionBehin
     Hair hair(test::combedShape(curtain()), params);
     for (int n = 0; n < 30; ++n) hair.step(kFrame);
     hair.bodies = {ellipsoid({0.04, -0.2, 0.02}, {0.05, 0.06, 0.045})};
-    const auto energy = [&] { return sim::mechanicalEnergy(hair.mesh, params, hair.context, hair.state); };
+    const auto energy = [&] { return test::mechanicalEnergy(hair.mesh, params, hair.context, hair.state); };
     const double unsqueezed = energy();
     double before = deepest(hair), fastest = 0;
     const double at_first = before;

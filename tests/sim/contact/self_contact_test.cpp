@@ -5,6 +5,7 @@
 
 #include "sim/forces/model.h"
 #include "sim/stabilization/inversion_recovery.h"
+#include "tests/sim_probes.h"
 #include "tests/test_meshes.h"
 
 namespace self_contact_test {
@@ -234,7 +235,7 @@ struct PressedTogether {
 TEST(SelfContact, PushesAddNoEnergy) {
   PressedTogether pressed(4e5);
   Hair& hair = pressed.hair;
-  const auto energy = [&] { return sim::mechanicalEnergy(hair.mesh, hair.params, hair.context, hair.state); };
+  const auto energy = [&] { return test::mechanicalEnergy(hair.mesh, hair.params, hair.context, hair.state); };
   int met = 0;
   double before = INFINITY, worst = 0, weight = 0;
   for (const double volume : hair.mesh.vertex_volume) weight += 9.81 * hair.params.density * volume;

@@ -202,7 +202,7 @@ TEST(Pin, CountsInTheMechanicalEnergyAndAddsNone) {
   params.tolerance = 1e-8, params.acceleration_tolerance = 0, params.displacement_tolerance = 0;
   Hair hair(test::combedShape(patch()), params);
   hair.step(kFrame);
-  const auto energy = [&] { return sim::mechanicalEnergy(hair.mesh, params, hair.context, hair.state); };
+  const auto energy = [&] { return test::mechanicalEnergy(hair.mesh, params, hair.context, hair.state); };
   const double free = energy();
   const int tip = tipOf(hair, 6);
   hair.pins = {{tip, hair.state.positions[tip] + Vec3(0.06, 0.05, 0.02), Vec3::Zero(), 20}};

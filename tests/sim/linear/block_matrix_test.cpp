@@ -1,5 +1,6 @@
 // Factors and products of block matrices.
 #include "sim/linear/envelope_cholesky.h"
+#include "tests/block_product.h"
 #include "tests/linear_systems.h"
 
 namespace tests {

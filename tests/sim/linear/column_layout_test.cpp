@@ -3,6 +3,7 @@
 
 #include "sim/forces/kernels.h"
 #include "tests/bench/preconditioners/preconditioner.h"
+#include "tests/block_product.h"
 #include "tests/sim_probes.h"
 #include "tests/test_meshes.h"
 

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "sim/linear/vector_kernels.h"
+#include "tests/block_product.h"
 #include "tests/linear_systems.h"
 
 namespace solution_projection_test {

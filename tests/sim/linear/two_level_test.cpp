@@ -3,6 +3,7 @@
 
 #include "sim/linear/coarse_space.h"
 #include "sim/linear/vector_kernels.h"
+#include "tests/block_product.h"
 #include "tests/linear_systems.h"
 
 namespace tests {

@@ -36,8 +36,8 @@ double massOf(const Hair& hair) {
 // Energy above that of the rest shape where the roots are, J.
 double energyAboveRest(Hair& hair, const Vec3& moved) {
   const sim::HairState rest = sim::restState(hair.mesh, Eigen::Isometry3d(Eigen::Translation3d(moved)));
-  return sim::mechanicalEnergy(hair.mesh, hair.params, hair.context, hair.state) -
-         sim::mechanicalEnergy(hair.mesh, hair.params, hair.context, rest);
+  return test::mechanicalEnergy(hair.mesh, hair.params, hair.context, hair.state) -
+         test::mechanicalEnergy(hair.mesh, hair.params, hair.context, rest);
 }
 
 // The largest energy, of that which being left behind is worth, after the roots were dragged along by `moved` within
@@ -183,7 +183,7 @@ TEST(EnergyLimit, LimpHairInTheWindOnlyLosesEnergyAndComesToRest) {
   patch.nx = 6, patch.nz = 5;
   Hair hair(test::combedShape(patch), params);
   const auto energy = [&] {
-    double sum = sim::mechanicalEnergy(hair.mesh, params, hair.context, hair.state);
+    double sum = test::mechanicalEnergy(hair.mesh, params, hair.context, hair.state);
     for (int i = 0; i < hair.mesh.vertexCount(); ++i) {
       const double push = params.density * hair.mesh.vertex_volume[i] * params.air_drag;
       sum -= push * Vec3(params.wind_x, 0, params.wind_z).dot(hair.state.positions[i]);
