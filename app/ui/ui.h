@@ -52,6 +52,8 @@ struct BrushState {
   bool tie = false;                          // in place of a tool: a tie's ring, put down where the button is let go
   double tie_radius = 0.02;                  // m
   bool tie_held = false;                     // its slider
+  int tie_picked = -1;                       // of the character's ties, that the rows speak of; -1: of all
+  bool tie_moves = false;                    // the ring that is put down is the picked one
   Vec3 last = Vec3::Zero();                  // m, scalp frame: where combing has come to
 };
 

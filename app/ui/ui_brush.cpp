@@ -14,6 +14,7 @@
 #include "app/scene/edit/groom_brush.h"
 #include "app/scene/edit/paint_brush.h"
 #include "app/scene/edit/picking.h"
+#include "app/scene/edit/tie_list.h"
 #include "app/ui/ui_panels.h"
 #include "app/ui/ui_widgets.h"
 
@@ -393,11 +394,17 @@ void tieFrame(bool begins, Demo& demo, UiState& ui) {
   if (hit) brush.last = worldToScalp(actor) * *hit;
   if (!brush.stroking && !hit) return;
   const Vec3 place = worldToScalp(actor).inverse(Eigen::Isometry) * brush.last;
-  if (brush.mirror) drawRing("mirror_ring", acrossHead(place, actor), kWeak, demo, ui);
+  if (brush.mirror && !brush.tie_moves) drawRing("mirror_ring", acrossHead(place, actor), kWeak, demo, ui);
   drawRing("tie_ring", place, 1, demo, ui);
   if (!brush.stroking || brush.held) return;
   brush.stroking = brush.tie = false;
-  postRequest(demo, {Ask::kTie, "", writeTies(tieAt(brush.last, brush, actor)).dump()});
+  std::vector<TieSpec> ties = actor.spec.ties;
+  const auto picked = static_cast<std::size_t>(std::max(brush.tie_picked, 0));
+  if (brush.tie_moves && picked < ties.size())
+    ties[picked].at = tieAt(brush.last, brush, actor).front().at;
+  else
+    ties = withRings(std::move(ties), tieAt(brush.last, brush, actor), actor.body->character.scalp);
+  postRequest(demo, {Ask::kTie, "", writeTies(ties).dump()});
 }
 
 }  // namespace

@@ -7,7 +7,6 @@
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
-#include <nlohmann/json.hpp>
 
 #include "app/files/data_path.h"
 #include "app/files/length_units.h"
@@ -315,57 +314,6 @@ void inspectorSection(const Actor& actor, Demo& demo, UiState& ui) {
   }
 }
 
-void tieRow(const Actor& actor, Demo& demo, UiState& ui) {
-  rowLabel("Tie", "A ring that gathers the hair to a tail and holds it to the head; two: left and right");
-  static constexpr const char* kNames[] = {"none", "high", "back", "low", "two"};
-  const std::vector<TieSpec>& ties = actor.spec.ties;
-  int chosen = ties.empty() ? 0 : ties.size() == 2 ? 4 : -1;
-  for (int k = 1; k < 4 && ties.size() == 1; ++k) chosen = ties[0].place == kNames[k] && !ties[0].at ? k : chosen;
-  const int pressed = segments("tie", {"None", "High", "Back", "Low", "Two"}, chosen, ui);
-  // Hair that has no room for a plait or a bun hangs as a tail.
-  bool braided = !actor.haircut->braids.empty() && std::ranges::all_of(ties, &TieSpec::braided);
-  bool bun = !actor.haircut->wound.empty() && std::ranges::all_of(ties, &TieSpec::bun);
-  const auto post = [&](std::vector<TieSpec> wanted) {
-    for (TieSpec& tie : wanted) tie.braided = braided, tie.bun = bun;
-    postRequest(demo, {Ask::kTie, "", writeTies(wanted).dump()});
-  };
-  const bool hangs = !braided && !bun;
-  const bool other = pressed >= 0 && pressed != chosen;
-  if (other && hangs) postRequest(demo, {Ask::kTie, "", kNames[pressed]});
-  if (other && !hangs) post(tiesFromText(kNames[pressed]));
-  BrushState& brush = ui.brush;
-  rowLabel("By hand", "Puts the ring where the button is let go on the hair; with Mirror (Brushes) one on each side");
-  if (ImGui::Button(brush.tie ? "Drag on the hair" : "Put ring", {-1, 0})) {
-    brush.tie = !brush.tie;
-    if (brush.tie) brush.tool = brush.field = ui.select.element = -1;
-  }
-  noteItem("tie_by_hand", ui);
-  rowLabel("Ring", "Radius of the tie's ring");
-  if (!ties.empty() && !brush.tie_held && !brush.tie) brush.tie_radius = ties[0].radius;
-  float shown = static_cast<float>(1000 * brush.tie_radius);
-  ImGui::SetNextItemWidth(-1);
-  {
-    const MarksBelowDigits marks;
-    if (ImGui::SliderFloat("##tie_radius", &shown, 1000 * kThinnestTie, 1000 * kWidestTie, "%.0f mm",
-                           ImGuiSliderFlags_AlwaysClamp))
-      brush.tie_radius = std::clamp(static_cast<double>(shown) / 1000, kThinnestTie, kWidestTie);
-  }
-  noteItem("tie_radius", ui);
-  brush.tie_held = ImGui::IsItemActive();
-  if (ImGui::IsItemDeactivatedAfterEdit() && !ties.empty() && !brush.tie) {
-    std::vector<TieSpec> wider = ties;
-    for (TieSpec& tie : wider) tie.radius = brush.tie_radius;
-    post(wider);
-  }
-  if (ties.empty()) return;
-  rowLabel("Braided", "What hangs from the tie is drawn as a plait of three strands, to a second tie before its end");
-  if (ImGui::Checkbox("##braided", &braided)) post(ties);
-  noteItem("braided", ui);
-  rowLabel("Bun", "What hangs from the tie is wound about it, as a rope or as a plait, and pinned to the head");
-  if (ImGui::Checkbox("##bun", &bun)) post(ties);
-  noteItem("bun", ui);
-}
-
 }  // namespace
 
 void hairTab(Demo& demo, UiState& ui) {
@@ -392,7 +340,7 @@ void hairTab(Demo& demo, UiState& ui) {
                                     from_file ? -1 : static_cast<int>(actor.spec.resolution), ui);
     static constexpr const char* kResolutions[] = {"low", "medium", "high", "ultra"};
     if (resolution >= 0) postRequest(demo, {Ask::kResolution, kResolutions[resolution], ""});
-    tieRow(actor, demo, ui);
+    tieRows(demo, ui);
     rowLabel("Hair mesh file", "OBJ with one group a layer; see assets/hair/README.md");
     if (pathInput("##hair_path", from_file ? stem(actor.spec.hair).c_str() : "path, then Enter", BrowseFor::kHair,
                   ui.hair_path, ui)) {

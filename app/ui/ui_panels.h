@@ -46,6 +46,9 @@ bool nudgeChosen(int key, bool far, Demo& demo, UiState& ui);
 // Curves of stiffness and mass from root to tip.
 void curveRows(Demo& demo, UiState& ui);
 
+// The hair's ties: sets of them by name, and a list of which one is picked, changed and taken away.
+void tieRows(Demo& demo, UiState& ui);
+
 // What the character wears.
 void attachmentSection(Demo& demo, UiState& ui);
 void pinSection(Demo& demo, UiState& ui);

@@ -12,6 +12,7 @@
 #include "app/files/recording.h"
 #include "app/files/scene_file.h"
 #include "app/scene/demo.h"
+#include "app/scene/edit/tie_list.h"
 #include "tests/app/scene/small_scene.h"
 #include "tests/run_program.h"
 #include "tests/sim_probes.h"
@@ -377,6 +378,41 @@ TEST(Ties, ASceneKeepsThem) {
   const auto mixed = app::tiesFromText(R"(["two", {"at": "high"}])");
   ASSERT_EQ(mixed.size(), 3u);
   EXPECT_EQ(mixed[0].place + mixed[1].place + mixed[2].place, "leftrighthigh");
+}
+
+// A ring put beside another shares the hair with it, and each of them has some to hold.
+TEST(Ties, ARingMoreSharesTheHairWithTheNearest) {
+  const app::Scene scene = tiedScene("low", "idle_turns.bvh", app::Resolution::kLow);
+  app::Demo demo = app::openScene(scene, 1.5);
+  const app::Scalp& scalp = demo.actors[0].body->character.scalp;
+  const std::vector<app::TieSpec> low = demo.actors[0].spec.ties;
+  app::TieSpec high;
+  high.place = "high";
+  const std::vector<app::TieSpec> two = app::withRings(low, {high}, scalp);
+  ASSERT_EQ(two.size(), 2u);
+  EXPECT_EQ(two[0].place, "high") << "a bundle goes to the first tie that takes it";
+  EXPECT_GT(two[0].above, 0);
+  EXPECT_EQ(two[1].above, low[0].above);
+  demo.requests = {{Ask::kTie, "", app::writeTies(two).dump()}};
+  app::advanceFrame(demo, 1.0 / 60, {});
+  ASSERT_FALSE(demo.message_is_fault) << demo.message;
+  ASSERT_EQ(demo.actors[0].haircut->bands.size(), 2u);
+  for (const app::HairTie& band : demo.actors[0].haircut->bands) EXPECT_GT(band.radius, 0.002);
+  // Below it the same hair is shared the other way about; beside it by sides.
+  const std::vector<app::TieSpec> below = app::withRings({high}, low, scalp);
+  ASSERT_EQ(below.size(), 2u);
+  EXPECT_EQ(below[0].above, two[0].above);
+  EXPECT_EQ(below[1].place, "low");
+  app::TieSpec left;
+  left.at = app::placeTies(low, scalp)[0].at + sim::Vec3(0.06, 0.01, 0);
+  const std::vector<app::TieSpec> beside = app::withRings(low, {left}, scalp);
+  ASSERT_EQ(beside.size(), 2u);
+  EXPECT_EQ(beside[0].side, "right");
+  EXPECT_EQ(beside[1].side, "left");
+  EXPECT_EQ(app::withRings({}, low, scalp).size(), 1u);
+  demo.requests = {{Ask::kUndo, "", "", 1}};
+  app::advanceFrame(demo, 1.0 / 60, {});
+  EXPECT_EQ(app::writeTies(demo.actors[0].spec.ties), app::writeTies(low));
 }
 
 }  // namespace ties_test

@@ -275,6 +275,50 @@ TEST_F(Select, ARingIsTiedWhereTheHandLetsGo) {
   for (const Request& request : asked) EXPECT_NE(request.what, Ask::kBrush);
 }
 
+// Ties are a list: a ring more is put beside those that there are, one is picked and changed, moved, taken away.
+TEST_F(Select, TiesAreAListOfWhichOneIsChanged) {
+  ImGui::GetIO().DisplaySize = {1280, 3000};
+  openTab(app::tabIndex("hair"));
+  const auto tiesAsked = [](const std::vector<Request>& asked) {
+    const auto posted = std::ranges::find(asked, Ask::kTie, &Request::what);
+    return posted == asked.end() ? std::vector<app::TieSpec>{} : app::tiesFromText(posted->text);
+  };
+  const auto& now = [&]() -> const std::vector<app::TieSpec>& { return demo_.actors[0].spec.ties; };
+  apply({{Ask::kTie, "", "two"}});
+  ASSERT_EQ(now().size(), 2u) << demo_.message;
+  frame();
+  ASSERT_TRUE(find("tie 0") && find("tie 1"));
+  EXPECT_FALSE(find("tie_side All")) << "none is picked";
+  click("tie 1");
+  EXPECT_EQ(ui_.brush.tie_picked, 1);
+  frame();
+  EXPECT_TRUE(find("tie_side All"));
+  const std::vector<app::TieSpec> wider = tiesAsked(click("tie_radius", 0.8f));
+  ASSERT_EQ(wider.size(), 2u);
+  EXPECT_EQ(wider[0].radius, now()[0].radius);
+  EXPECT_GT(wider[1].radius, now()[1].radius + 0.01);
+  const std::vector<app::TieSpec> low = tiesAsked(click("tie_place Low"));
+  ASSERT_EQ(low.size(), 2u);
+  EXPECT_EQ(low[0].place, "left");
+  EXPECT_EQ(low[1].place, "low");
+  const std::vector<app::TieSpec> left = tiesAsked(click("remove tie 1"));
+  ASSERT_EQ(left.size(), 1u);
+  EXPECT_EQ(left[0].place, "left");
+  EXPECT_EQ(ui_.brush.tie_picked, -1);
+  ImGui::GetIO().DisplaySize = {1280, 720};
+  frame();
+  ui_.brush.tie = true;
+  ui_.brush.tie_moves = false;
+  const std::vector<app::TieSpec> more = tiesAsked(press(onHair(40), 20));
+  EXPECT_EQ(more.size(), 3u);
+  ui_.brush.tie = ui_.brush.tie_moves = true;
+  ui_.brush.tie_picked = 0;
+  const std::vector<app::TieSpec> moved = tiesAsked(press(onHair(40), 20));
+  ASSERT_EQ(moved.size(), 2u);
+  EXPECT_TRUE(moved[0].at);
+  EXPECT_FALSE(moved[1].at);
+}
+
 // What is chosen is pinned where it is, by the section's settings, and let go again.
 TEST_F(Select, WhatIsChosenIsPinnedAndUnpinned) {
   openTab(app::tabIndex("hair"));
