@@ -19,7 +19,7 @@ namespace {
 
 constexpr int kStrokes = 4, kStroke = 50, kPause = 110,
               kWarmUp = 30;  // frames; in a pause the balance comes to its end
-constexpr int kFrames = kStrokes * (kStroke + kPause);
+constexpr int kCostFrames = kStrokes * (kStroke + kPause);
 constexpr double kBound = 8e-3;  // s
 
 double percentile(std::vector<double> values, double share) {
@@ -97,7 +97,7 @@ struct Frames {
 Frames framesOf(const Sample& sample) {
   app::Demo demo = walkingHair();
   Frames frames;
-  for (int frame = 0; frame < kWarmUp + kFrames; ++frame) {
+  for (int frame = 0; frame < kWarmUp + kCostFrames; ++frame) {
     if (sample && frame >= kWarmUp) demo.requests = askedAt(frame - kWarmUp, sample, demo);
     const double started = cpuSeconds();
     app::applyRequests(demo);

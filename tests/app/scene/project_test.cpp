@@ -178,7 +178,7 @@ TEST(Project, WhatIsNoneOrNewerOrChangedIsRefusedAndChangesNothing) {
     return std::string("none");
   };
   std::string newer = text;
-  newer.replace(newer.find("\"hairmesh-project\": 4"), 21, "\"hairmesh-project\": 5");
+  newer.replace(newer.find("\"hairmesh-project\": 5"), 21, "\"hairmesh-project\": 6");
   EXPECT_NE(faultOf(newer).find("version 5, newer"), std::string::npos) << faultOf(newer);
   EXPECT_NE(faultOf("{}").find("is no project"), std::string::npos);
   EXPECT_NE(faultOf("[").find("bad.json"), std::string::npos);
