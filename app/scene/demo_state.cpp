@@ -11,6 +11,7 @@
 #include "app/files/text_file.h"
 #include "app/scene/sim_to_render.h"
 #include "sim/field_text.h"
+#include "sim/forces/rest_balance.h"
 #include "sim/mesh/field_bytes.h"
 #include "sim/mesh/state_bytes.h"
 
@@ -189,8 +190,11 @@ void install(SavedActor saved, const Vec3& origin, Actor& actor) {
   savedOf(actor) = savedOf(saved.actor);
   actor.hair = std::move(saved.actor.hair);
   const auto contextOf = [](const sim::HairMesh& mesh) { return std::make_unique<sim::StepContext>(mesh, now); };
+  std::vector<sim::V3<double>> sag = actor.context->material().sag();
   actor.context = contextOf(actor.haircut->mesh);
   actor.context->refreshGradually(true);
+  // Of a mesh that has taken no step yet; any other has its balance made anew, to the bit.
+  if (actor.haircut->remeshed && !actor.hair.memory.material.known) actor.context->material().startFrom(std::move(sag));
   actor.detail.coarse.reset();
   if (saved.chosen_mesh >= 0) actor.detail.coarse = static_cast<Resolution>(saved.chosen_mesh);
   actor.coarse = std::move(saved.actor.coarse);
