@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 #include <functional>
+#include <memory>
 #include <string>
 #include <utility>
 #include <vector>
@@ -34,7 +35,11 @@ app::Demo walkingHair() {
   spec.style = app::Style::kLong;
   spec.resolution = app::Resolution::kHigh;
   scene.characters = {spec};
-  return app::openScene(std::move(scene), 1.5);
+  app::Demo demo = app::openScene(std::move(scene), 1.5);
+  app::Actor& actor = demo.actors[0];
+  actor.context = std::make_unique<sim::StepContext>(actor.haircut->mesh, cpuSeconds);
+  actor.context->refreshGradually(true);
+  return demo;
 }
 
 // A stroke that wanders over the hair, a sample a frame.

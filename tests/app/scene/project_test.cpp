@@ -179,7 +179,7 @@ TEST(Project, WhatIsNoneOrNewerOrChangedIsRefusedAndChangesNothing) {
   };
   std::string newer = text;
   newer.replace(newer.find("\"hairmesh-project\": 5"), 21, "\"hairmesh-project\": 6");
-  EXPECT_NE(faultOf(newer).find("version 5, newer"), std::string::npos) << faultOf(newer);
+  EXPECT_NE(faultOf(newer).find("version 6, newer"), std::string::npos) << faultOf(newer);
   EXPECT_NE(faultOf("{}").find("is no project"), std::string::npos);
   EXPECT_NE(faultOf("[").find("bad.json"), std::string::npos);
   for (const auto& entry : std::filesystem::directory_iterator(folder)) {
