@@ -59,6 +59,17 @@ json writeMaps(FieldFiles maps) {
   return written;
 }
 
+// Hairdos, which `--style` takes too, are scenes.
+Style readStyle(const JsonPlace& place) {
+  const std::string name = place.value().is_string() ? place.text() : "";
+  const std::string scene = "assets/scenes/" + name + ".json";
+  std::error_code ignored;
+  if (!parseStyle(name) && name.size() < 64 && name.find_first_of("./\\") == std::string::npos &&
+      std::filesystem::is_regular_file(dataPath(scene), ignored))
+    place.refuse("is \"" + name + "\", a scene of its own", "open " + scene + ", or take its character");
+  return *parseStyle(place.choice(kStyleNames));
+}
+
 CharacterSpec readCharacter(const JsonPlace& place, const CharacterLook& look) {
   expectKeys(place, kCharacterKeys);
   CharacterSpec spec;
@@ -73,7 +84,7 @@ CharacterSpec readCharacter(const JsonPlace& place, const CharacterLook& look) {
     if (const std::string fault = readToldBody(spec.body, told); !fault.empty()) place.at("body").refuse(fault, "");
   }
   if (place.has("clip")) spec.clip = place.at("clip").text();
-  if (place.has("style")) spec.style = *parseStyle(place.at("style").choice(kStyleNames));
+  if (place.has("style")) spec.style = readStyle(place.at("style"));
   if (place.has("resolution")) {
     spec.resolution = *parseResolution(place.at("resolution").choice({"low", "medium", "high", "ultra"}));
   }

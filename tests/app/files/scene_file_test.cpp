@@ -107,6 +107,7 @@ TEST(SceneFile, FaultsNameFilePlaceAndMend) {
       {R"({"characters": [{}, {"motion": "nope.bvh"}]})", "/characters/1/motion", "beside the scene"},
       {R"({"characters": [{"hair": "nope.obj"}]})", "/characters/0/hair", "names 'nope.obj', which is not there"},
       {R"({"characters": [{"style": "mohawk"}]})", "/characters/0/style", "short"},
+      {R"({"characters": [{"style": "curly"}]})", "/characters/0/style", "open assets/scenes/curly.json"},
       {R"({"characters": [{"position": [1, 2]}]})", "/characters/0/position", "three"},
       {R"({"characters": [{"position": [1, 2, 1e30]}]})", "/characters/0/position/2", "1000"},
       {R"({"characters": [{"position": [1, "x", 0]}]})", "/characters/0/position/1", "number"},
