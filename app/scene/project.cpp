@@ -3,6 +3,7 @@
 #include <signal.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
@@ -115,6 +116,8 @@ void takeShape(sim::ByteReader& from, double version, const std::string& file, i
   shape.column_first = columns;
   shape.root_faces = rootFaces(faces);
   remeshHair(std::move(shape), {}, index, demo);
+  // A start that is no number has the balance begin from nothing.
+  if (!std::all_of(sag.begin(), sag.end(), [](const Vec3& way) { return way.allFinite(); })) sag.clear();
   std::vector<sim::V3<double>> start;
   for (const Vec3& way : sag) start.push_back({way.x(), way.y(), way.z()});
   demo.actors[static_cast<std::size_t>(index)].context->material().startFrom(std::move(start));
