@@ -3,15 +3,13 @@
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
-#include <list>
-#include <mutex>
-#include <optional>
 #include <utility>
 
 #include "app/figure/arm_clearance.h"
 #include "app/figure/character_build.h"
 #include "app/figure/face_mesh.h"
 #include "app/figure/hand_mesh.h"
+#include "app/figure/kept.h"
 #include "app/figure/mannequin_field.h"
 #include "app/figure/mannequin_parts.h"
 #include "app/figure/skin_cover.h"
@@ -135,39 +133,6 @@ Character makeCharacter(Kind kind, const std::string& text, const std::string& m
   return character;
 }
 
-constexpr std::size_t kKept = 4;
-
-// Mannequins made last, the latest first: scenes opened one after another, or compared, mostly show the same one, and a
-// text gives the same one each time.
-class KeptMannequins {
- public:
-  Character get(const std::string& text, const std::string& file) {
-    if (std::optional<Character> kept = find(text, file)) return *std::move(kept);
-    Character made = makeCharacter(Kind::kBvh, text, file, {}, {});
-    const std::lock_guard lock(mutex_);
-    kept_.push_front({file, text, made});
-    if (kept_.size() > kKept) kept_.pop_back();
-    return made;
-  }
-
- private:
-  struct Made {
-    std::string file, text;
-    Character character;
-  };
-
-  std::optional<Character> find(const std::string& text, const std::string& file) {
-    const std::lock_guard lock(mutex_);
-    const auto found = std::ranges::find_if(kept_, [&](const Made& m) { return m.file == file && m.text == text; });
-    if (found == kept_.end()) return {};
-    kept_.splice(kept_.begin(), kept_, found);
-    return found->character;
-  }
-
-  std::mutex mutex_;
-  std::list<Made> kept_;
-};
-
 }  // namespace
 
 Character loadCharacter(const std::string& motion_file, const std::string& parts_dir, const std::string& told) {
@@ -175,11 +140,14 @@ Character loadCharacter(const std::string& motion_file, const std::string& parts
   if (!parts_dir.empty() && kind != Kind::kMot)
     throw InputError(motion_file, "", "has no use for the rigid parts of '" + parts_dir + "'",
                      "give --parts with an ARCSim .mot motion only");
-  static KeptMannequins mannequins;
+  static Kept<Character> mannequins;
   if (!told.empty() && kind != Kind::kModel && kind != Kind::kUnknown)
     throw InputError(motion_file, "", "is a motion, and '" + told.substr(0, 80) + "' is told of a body without bones",
                      "leave out --body, or the scene's \"body\"");
-  if (kind == Kind::kBvh) return mannequins.get(readText(motion_file), motion_file);
+  if (kind == Kind::kBvh) {
+    const std::string text = readText(motion_file);
+    return mannequins.get(motion_file + '\n' + text, [&] { return makeCharacter(kind, text, motion_file, {}, {}); });
+  }
   return makeCharacter(kind, kind == Kind::kMot ? readText(motion_file) : "", motion_file, parts_dir, told);
 }
 

@@ -1,8 +1,12 @@
 // Signed distance to the rest-pose body, sampled on a grid around head and trunk.
 #include <algorithm>
 #include <array>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "app/figure/character.h"
+#include "app/figure/kept.h"
 #include "app/figure/signed_grid.h"
 
 namespace app {
@@ -14,9 +18,7 @@ SignedGrid layOut(double head_height) {
   return layOutGrid(scale * Vec3(-0.364, -0.72, -0.32), scale * Vec3(0.364, 0.30, 0.32), 0.007 * scale);
 }
 
-}  // namespace
-
-BodyDistance restBodyDistance(const Character& character) {
+SignedGrid restGrid(const Character& character) {
   const Rigid to_scalp = (character.skeleton.joints[character.head_joint].rest_world * character.head_frame).inverse();
   SignedGrid grid = layOut(character.scalp.head_height);
   const Vec3 high = grid.point(grid.n[0] - 1, grid.n[1] - 1, grid.n[2] - 1);
@@ -35,6 +37,26 @@ BodyDistance restBodyDistance(const Character& character) {
     if (outside < 2) near.push_back(corners);
   }
   fillGrid(near, band, Pieces::kAll, grid);
+  return grid;
+}
+
+}  // namespace
+
+std::string restSurfaceBytes(const Character& character) {
+  std::string bytes;
+  addBytes(character.mesh.positions, bytes);
+  addBytes(character.mesh.triangles, bytes);
+  const Rigid frame = character.skeleton.joints[character.head_joint].rest_world * character.head_frame;
+  const std::vector<double> scalp{character.scalp.head_height, character.scalp.center.x(), character.scalp.center.y(),
+                                  character.scalp.center.z()};
+  addBytes(scalp, bytes);
+  addBytes(std::vector<double>(frame.data(), frame.data() + 16), bytes);
+  return bytes;
+}
+
+BodyDistance restBodyDistance(const Character& character) {
+  static Kept<SignedGrid> kept;
+  SignedGrid grid = kept.get(restSurfaceBytes(character), [&] { return restGrid(character); });
   return [grid = std::move(grid)](const Vec3& p) { return grid.interpolate(p); };
 }
 

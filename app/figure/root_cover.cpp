@@ -3,8 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <string>
 #include <unordered_map>
+#include <utility>
 
+#include "app/figure/kept.h"
 #include "app/figure/smoothstep.h"
 
 namespace app {
@@ -82,9 +85,7 @@ class Cubes {
   std::unordered_map<std::uint64_t, std::vector<int>> vertices_;
 };
 
-}  // namespace
-
-std::vector<float> rootCover(const Character& character, const sim::HairMesh& hair) {
+std::vector<float> coverOf(const Character& character, const sim::HairMeshShape& hair) {
   const SkinnedMesh& mesh = character.mesh;
   const double scale = character.scalp.head_height / kHeadHeight;
   const Rigid to_scalp = scalpToWorld(character, restPose(character.skeleton)).inverse();
@@ -100,7 +101,7 @@ std::vector<float> rootCover(const Character& character, const sim::HairMesh& ha
     if (on_scalp[v] > 0) cubes.add(places[v], static_cast<int>(v));
   }
   std::vector<RootSample> samples;
-  for (const sim::RootFace& face : hair.shape.root_faces) addFace(hair.shape, face, scale * kSpacing, samples);
+  for (const sim::RootFace& face : hair.root_faces) addFace(hair, face, scale * kSpacing, samples);
 
   // The weight (1 - d^2 / reach^2)^2 spreads each root's area; over a plane it integrates to pi reach^2 / 3.
   const auto spread = [](double square, double reach) {
@@ -131,6 +132,23 @@ std::vector<float> rootCover(const Character& character, const sim::HairMesh& ha
     result.insert(result.end(), {static_cast<float>(cover * thick), static_cast<float>(cover * under)});
   }
   return result;
+}
+
+}  // namespace
+
+std::vector<float> rootCover(const Character& character, const sim::HairMesh& hair) {
+  static Kept<std::vector<float>> kept;
+  std::string key = restSurfaceBytes(character);
+  addBytes(character.mesh.normals, key);
+  std::vector<Vec3> corners;
+  for (const sim::RootFace& face : hair.shape.root_faces) {
+    for (int k = 0; k < 4; ++k) {
+      const int column = face.columns[static_cast<std::size_t>(std::min(k, face.corner_count - 1))];
+      corners.push_back(hair.shape.positions[static_cast<std::size_t>(hair.shape.column_first[column])]);
+    }
+  }
+  addBytes(corners, key);
+  return kept.get(key, [&] { return coverOf(character, hair.shape); });
 }
 
 }  // namespace app
