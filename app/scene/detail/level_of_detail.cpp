@@ -30,6 +30,9 @@ struct Rate {
   int span;
 };
 constexpr std::array<Rate, 3> kRates{{{520, 2}, {380, 4}, {100, 8}}};
+// Of the hair's length: what a vertex moves against the head in such a step at most. In longer ones the energy limit
+// takes part of what a somersault throws about, and plaits end crumpled.
+constexpr double kMostWay = 0.1;
 
 // Pixels from which hair that begins coarse comes to rest as it would near by, with its own mesh: long hair that the
 // shoulders turn aside finds another place with another one. Smaller hair shows less of that than it costs to load.
@@ -111,6 +114,16 @@ bool countSleep(double step, double time, Demo& demo, Actor& actor) {
   return asleep;
 }
 
+// m that a vertex moved against the head in a step of the clock, of late.
+double largestWay(const Actor& actor) {
+  const auto head = static_cast<std::size_t>(actor.body->character.head_joint);
+  const Vec3 carried = actor.pose.world[head].translation() - actor.previous_pose.world[head].translation();
+  double largest = 0;
+  for (std::size_t v = 0; v < actor.previous_positions.size(); ++v)
+    largest = std::max(largest, (actor.hair.positions[v] - actor.previous_positions[v] - carried).norm());
+  return largest / actor.span;
+}
+
 }  // namespace
 
 double projectedSize(const Demo& demo, const Actor& actor) {
@@ -155,8 +168,10 @@ void chooseDetail(Demo& demo) {
     chooseMesh(size, demo, actor);
     const int before = detail.step_span;
     detail.step_span = 1;
+    const double way = largestWay(actor), most_way = kMostWay * actor.haircut->mesh.hair_length;
     for (const Rate& rate : kRates) {
-      if (skips[kSkipFarSteps] && below(size, rate.below, before >= rate.span)) detail.step_span = rate.span;
+      const bool gentle = rate.span * way <= most_way;
+      if (skips[kSkipFarSteps] && gentle && below(size, rate.below, before >= rate.span)) detail.step_span = rate.span;
     }
   }
 }

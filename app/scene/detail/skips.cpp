@@ -23,8 +23,9 @@ constexpr std::array<Skip, kSkipCount> kTable{{
      "as it hung.",
      "tests/sim/skips_sim_test.cpp: Unseen.WhoIsLeftOutIsNotInThePicture"},
     {kSkipFarSteps, "far-steps", kSimulation, "steps", false, "mean 3 pixels over the vertices",
-     "A character smaller than 520 pixels takes steps twice as long, below 380 four times, below 100 eight times; the "
-     "long steps of a crowd spread over the frames.",
+     "A character smaller than 520 pixels takes steps twice as long, below 380 four times, below 100 eight times, "
+     "as long as no vertex moves by a tenth of the hair's length against the head in such a step; the long steps of a "
+     "crowd spread over the frames.",
      "tests/sim/skips_sim_test.cpp: Far.StaysWithinItsPixels"},
     {kSkipFarMesh, "far-mesh", kSimulation, "steps", false, "mean 3 pixels over the vertices",
      "A character smaller than 420 pixels, its hair shorter than 150, is simulated with its style's low resolution, "

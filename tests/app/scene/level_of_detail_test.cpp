@@ -106,6 +106,30 @@ TEST(LevelOfDetail, StepsGrowLongerAtThePagesSizes) {
   }
 }
 
+TEST(LevelOfDetail, HairThatIsThrownAboutTakesShortSteps) {
+  Demo demo = open(app::Style::kShort);
+  app::Actor& actor = demo.actors[0];
+  ASSERT_EQ(careAt(99, demo).span, 8);
+  // The tip of a column, and then the whole figure, which counts for nothing.
+  const double share = 0.1 * lengthOf(demo);
+  const auto moved = [&](double way) {
+    actor.previous_positions = actor.hair.positions;
+    actor.previous_positions.back().x() -= way;
+    return careAt(99, demo).span;
+  };
+  EXPECT_EQ(moved(0.99 * share / 8), 8);
+  EXPECT_EQ(moved(1.01 * share / 8), 4);
+  EXPECT_EQ(moved(1.01 * share / 4), 2);
+  EXPECT_EQ(moved(1.01 * share / 2), 1);
+  actor.previous_positions = actor.hair.positions;
+  for (Vec3& p : actor.previous_positions) p.x() -= share;
+  for (app::Rigid& joint : actor.previous_pose.world) joint.pretranslate(Vec3(-share, 0, 0));
+  EXPECT_EQ(careAt(99, demo).span, 8);
+  // Of a step over several of the clock, the way that one of them would be.
+  actor.span = 4;
+  EXPECT_EQ(moved(1.01 * share / 8), 8);
+}
+
 TEST(LevelOfDetail, MeshesGrowCoarserAtThePagesSizes) {
   const std::string page = app::readText(app::dataPath("docs/data/skips.md"));
   EXPECT_NE(
